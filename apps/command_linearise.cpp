@@ -19,7 +19,7 @@ namespace {
 constexpr const char* model_extensions = ".toml .json .nc .mat";
 
 struct LineariseArguments {
-  OperatingPointArguments at;
+  OperatingPointArguments operating_point;
   std::string output, plot, hinge_offset, plot_width;
   int cycles = 0;
   bool no_maps = false, json = false, force = false;
@@ -46,13 +46,13 @@ int run(const LineariseArguments& arguments) {
     options.hinge_offset = quantity_of("--hinge-offset", arguments.hinge_offset, "m");
     if (options.hinge_offset < 0.0) throw InputError("--hinge-offset", 0, 0, "", "must be >= 0 m");
   }
-  const Design<double> design = read_operating_point(arguments.at, options.at);
+  const Design<double> design = read_operating_point(arguments.operating_point, options.operating_point);
   std::optional<OutputFile> output, plot;
   if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{model_extensions, arguments.force});
   if (format) plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
 
   const ControlModels models = control_models(design, options);
-  require_reached(arguments.at, models.linear.operating_point);
+  require_reached(arguments.operating_point, models.linear.operating_point);
   if (models.linear.model && output) write_models(models, *output, extension);
   if (models.linear.model && plot) {
     plot_step_responses(models, *format, plot->temporary());
@@ -71,8 +71,8 @@ int run(const LineariseArguments& arguments) {
 void add_linearise(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("linearise", "Give linear models and static maps for control design");
   const auto a = std::make_shared<LineariseArguments>();
-  add_operating_point(command, a->at);
-  command->add_flag("--allow-extrapolation", a->at.allow_extrapolation,
+  add_operating_point(command, a->operating_point);
+  command->add_flag("--allow-extrapolation", a->operating_point.allow_extrapolation,
                     "Search for a frequency or a lift outside the model's domain too (docs/targets.md)");
   add_file(command, "-o,--output", a->output, model_extensions, "Write the models to FILE.toml, .json, .nc or .mat");
   add_file(command, "--plot", a->plot, plot_extensions, "Plot the step responses to FILE.svg, .pdf or .png");
@@ -95,7 +95,7 @@ void add_linearise(CLI::App& program, Action& action) {
       "Exit status: 0 done, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
   command->callback([a, &action] {
     action = [a] {
-      a->at.vehicle = find_input(a->at.vehicle, InputKind::vehicle).string();
+      a->operating_point.vehicle = find_input(a->operating_point.vehicle, InputKind::vehicle).string();
       return run(*a);
     };
   });

@@ -103,17 +103,18 @@ void add_metrics(CLI::App& program, Action& action) {
 
 void add_schema(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("schema", "Print the JSON Schema of what a command's --json prints");
-  const auto of = std::make_shared<std::string>("run");
+  const auto schema_name = std::make_shared<std::string>("run");
   Values values;
   for (const std::string_view name : schema_commands()) values.choices.push_back({std::string(name)});
-  takes(command->add_option("command", *of, "The command (default run)")->type_name("COMMAND"), std::move(values));
+  takes(command->add_option("command", *schema_name, "The command (default run)")->type_name("COMMAND"),
+        std::move(values));
   command->footer("Example:\n  wingbeat schema run");
-  command->callback([of, &action] {
-    action = [of] {
-      const std::string schema = json_schema(*of);
+  command->callback([schema_name, &action] {
+    action = [schema_name] {
+      const std::string schema = json_schema(*schema_name);
       if (schema.empty()) {
-        const std::string_view near = nearest_name(*of, schema_commands());
-        throw InputError(in_quotes(*of), 0, 0, "",
+        const std::string_view near = nearest_name(*schema_name, schema_commands());
+        throw InputError(in_quotes(*schema_name), 0, 0, "",
                          near.empty() ? "no command with --json has this name"
                                       : fmt::format("no command with --json has this name; did you mean {}?", near));
       }

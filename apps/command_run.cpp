@@ -27,7 +27,7 @@ namespace {
 constexpr int waveform_rows = 361;
 
 struct RunArguments {
-  OperatingPointArguments at;
+  OperatingPointArguments operating_point;
   std::string method = "orbit";
   std::string tolerance = "1e-6";
   bool json = false, force = false, endurance = false;
@@ -70,7 +70,7 @@ int run(const RunArguments& arguments) {
   const auto cycle_format = asked_format("--plot", arguments.plot, arguments.plot_width);
   const auto power_format = asked_format("--plot-power", arguments.plot_power, arguments.plot_width);
 
-  const Design<double> design = read_operating_point(arguments.at, options);
+  const Design<double> design = read_operating_point(arguments.operating_point, options);
   const OutputRules drawing{plot_extensions, arguments.force};
   auto waveforms = reserved("--waveforms", arguments.waveforms, {".csv .nc", arguments.force});
   auto cycle_plot = reserved("--plot", arguments.plot, drawing);
@@ -84,7 +84,7 @@ int run(const RunArguments& arguments) {
                          "; expected battery or battery-sine");
   }
   const RunResult result = run_design(design, options);
-  require_reached(arguments.at, result);
+  require_reached(arguments.operating_point, result);
   const bool flaps = result.status == FlappingStatus::flapping;
   const bool has_metrics = std::isfinite(result.metrics[Metric::frequency]);
 
@@ -98,7 +98,7 @@ int run(const RunArguments& arguments) {
         write_waveforms_netcdf(
             waveforms->temporary(), result.cycle,
             {.title = fmt::format("One flapping cycle of {}",
-                                  design.name.empty() ? written_name(arguments.at.vehicle) : design.name),
+                                  design.name.empty() ? written_name(arguments.operating_point.vehicle) : design.name),
              .command = "run",
              .version = version,
              .vehicle = write_design(result.design),
@@ -135,11 +135,11 @@ int run(const RunArguments& arguments) {
 void add_run(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("run", "Find the steady flapping of one vehicle and report its metrics");
   const auto a = std::make_shared<RunArguments>();
-  add_operating_point(command, a->at);
+  add_operating_point(command, a->operating_point);
   add_choice<Method>(command, "--method", a->method, "orbit (default), or transient: simulated from rest", "METHOD");
   command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, 1e-12 to 1e-2 (default 1e-6)")
       ->type_name("NUMBER");
-  command->add_flag("--allow-extrapolation", a->at.allow_extrapolation,
+  command->add_flag("--allow-extrapolation", a->operating_point.allow_extrapolation,
                     "Search for a frequency or a lift outside the model's domain too (docs/targets.md)");
   command->add_flag("--endurance", a->endurance,
                     "How long it hovers and flaps on its battery, too (docs/endurance.md): takes some fifty times as "
@@ -164,7 +164,7 @@ void add_run(CLI::App& program, Action& action) {
       "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
   command->callback([a, &action] {
     action = [a] {
-      a->at.vehicle = find_input(a->at.vehicle, InputKind::vehicle).string();
+      a->operating_point.vehicle = find_input(a->operating_point.vehicle, InputKind::vehicle).string();
       return run(*a);
     };
   });

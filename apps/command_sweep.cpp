@@ -64,7 +64,7 @@ std::string duration(double seconds) {
 
 std::string grouped(std::uint64_t n) {
   std::string text = fmt::format("{}", n);
-  for (std::size_t at = text.size(); at > 3;) text.insert(at -= 3, 1, ',');
+  for (std::size_t position = text.size(); position > 3;) text.insert(position -= 3, 1, ',');
   return text;
 }
 

@@ -78,9 +78,10 @@ int main(int argc, char** argv) {
     return run(argc, argv);
   } catch (const wingbeat::InputError& error) {
     complain(error.what());
-    constexpr std::size_t most = 30;
-    for (std::size_t n = 0; n < std::min(most, error.others().size()); ++n) complain(error.others()[n].what());
-    if (error.others().size() > most) complain(fmt::format("and {} errors more", error.others().size() - most));
+    constexpr std::size_t max_errors = 30;
+    for (std::size_t n = 0; n < std::min(max_errors, error.others().size()); ++n) complain(error.others()[n].what());
+    if (error.others().size() > max_errors)
+      complain(fmt::format("and {} errors more", error.others().size() - max_errors));
     return bad_input;
   } catch (const wingbeat::ParameterError& error) {
     complain(error.what());

@@ -153,12 +153,12 @@ int main(int argc, char** argv) {
                     f.recomputed ? " recomputed" : "", f.note.c_str());
       }
       double worst = 0.0, is = 0.0, should = 0.0;
-      int at = 0;
+      int worst_number = 0;
       for (const Found& f : found) {
         const double off = std::abs(f.multiplier - f.multiplier_exact) / std::max(1e-6, std::abs(f.multiplier_exact));
-        if (!(off <= worst)) worst = off, at = f.number, is = f.multiplier, should = f.multiplier_exact;
+        if (!(off <= worst)) worst = off, worst_number = f.number, is = f.multiplier, should = f.multiplier_exact;
       }
-      std::printf("   multiplier: worst %g, number %d: %g exact %g\n", worst, at, is, should);
+      std::printf("   multiplier: worst %g, number %d: %g exact %g\n", worst, worst_number, is, should);
     }
     all.vehicles += sums.vehicles, all.compared += sums.compared, all.outside += sums.outside;
     all.outside_three += sums.outside_three, all.other += sums.other, all.seconds += sums.seconds;

@@ -191,9 +191,9 @@ int main(int argc, char** argv) {
   std::vector<Row> rows;
   for (const Rival& rival : rivals) rows.push_back(rival.missing.empty() ? tuned(rival) : Row{});
   std::vector<std::vector<double>> times(rivals.size());
-  const int most =
+  const int max_rounds =
       std::max_element(rivals.begin(), rivals.end(), [](auto& a, auto& b) { return a.rounds < b.rounds; })->rounds;
-  for (int round = 0; round < most; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     for (std::size_t n = 0; n < rivals.size(); ++n) {
       if (round >= rivals[n].rounds || !rivals[n].missing.empty()) continue;
       times[n].push_back(rivals[n].solve(rows[n].setting).seconds);

@@ -90,7 +90,7 @@ int main(int argc, char** argv) try {
     for (std::size_t n = 0; n < 4; ++n) values[n] = value(metrics[n]);
     return values;
   };
-  const auto of = [](Metric m, std::size_t springs, double scale) {
+  const auto scaled = [](Metric m, std::size_t springs, double scale) {
     return [=](const auto& metrics) { return scale * metrics[springs][m]; };
   };
   const auto ratio = [](Metric m) { return [=](const auto& metrics) { return metrics[1][m] / metrics[0][m]; }; };
@@ -104,21 +104,21 @@ int main(int argc, char** argv) try {
   std::printf("| --- | --- | --- | --- | --- | --- |\n");
   row("S_2 (1e-6 m4)", "", {1e6 * given[0], 1e6 * given[0], 1e6 * rod[0], 1e6 * work[0]});
   row("S_3 (1e-7 m5)", "", {1e7 * given[1], 1e7 * given[1], 1e7 * rod[1], 1e7 * work[1]});
-  row("3 V: frequency, springs off (Hz)", "21.7", each(at_3V, of(Metric::frequency, 0, 1.0)));
-  row("3 V: frequency, springs on (Hz)", "23.3", each(at_3V, of(Metric::frequency, 1, 1.0)));
+  row("3 V: frequency, springs off (Hz)", "21.7", each(at_3V, scaled(Metric::frequency, 0, 1.0)));
+  row("3 V: frequency, springs on (Hz)", "23.3", each(at_3V, scaled(Metric::frequency, 1, 1.0)));
   row("3 V: mean lift, on / off", "1.333", each(at_3V, ratio(Metric::lift_mean)));
   row("3 V: peak flapping velocity, on / off", "1.197", each(at_3V, ratio(Metric::flapping_velocity_peak)));
   row("3 V: mean rod force, on / off", "0.67", each(at_3V, ratio(Metric::rod_force_mean)));
-  row("22 Hz: peak lift, off (mN)", "18.3", each(at_22Hz, of(Metric::lift_peak, 0, 1e3)));
-  row("22 Hz: peak lift, on (mN)", "26.0", each(at_22Hz, of(Metric::lift_peak, 1, 1e3)));
-  row("22 Hz: peak rod force, off (mN)", "432", each(at_22Hz, of(Metric::rod_force_peak, 0, 1e3)));
-  row("22 Hz: peak rod force, on (mN)", "315", each(at_22Hz, of(Metric::rod_force_peak, 1, 1e3)));
+  row("22 Hz: peak lift, off (mN)", "18.3", each(at_22Hz, scaled(Metric::lift_peak, 0, 1e3)));
+  row("22 Hz: peak lift, on (mN)", "26.0", each(at_22Hz, scaled(Metric::lift_peak, 1, 1e3)));
+  row("22 Hz: peak rod force, off (mN)", "432", each(at_22Hz, scaled(Metric::rod_force_peak, 0, 1e3)));
+  row("22 Hz: peak rod force, on (mN)", "315", each(at_22Hz, scaled(Metric::rod_force_peak, 1, 1e3)));
   row("22 Hz: peak flapping velocity, on / off", "1.142", each(at_22Hz, ratio(Metric::flapping_velocity_peak)));
   row("22 Hz: mean lift, on / off", "1.154", each(at_22Hz, ratio(Metric::lift_mean)));
   row("22 Hz: electrical power, on / off", "0.82", each(at_22Hz, ratio(Metric::power_electrical)));
-  row("22 Hz: electrical power, off (mW)", "", each(at_22Hz, of(Metric::power_electrical, 0, 1e3)));
-  row("22 Hz: friction, off (mW)", "", each(at_22Hz, of(Metric::power_friction, 0, 1e3)));
-  row("22 Hz: aerodynamic power, off (mW)", "", each(at_22Hz, of(Metric::power_aerodynamic, 0, 1e3)));
+  row("22 Hz: electrical power, off (mW)", "", each(at_22Hz, scaled(Metric::power_electrical, 0, 1e3)));
+  row("22 Hz: friction, off (mW)", "", each(at_22Hz, scaled(Metric::power_friction, 0, 1e3)));
+  row("22 Hz: aerodynamic power, off (mW)", "", each(at_22Hz, scaled(Metric::power_aerodynamic, 0, 1e3)));
   row("22 Hz: P_residual / P_m, off (%)", "", each(at_22Hz, residual(0)));
   row("22 Hz: P_residual / P_m, on (%)", "", each(at_22Hz, residual(1)));
 } catch (const std::exception& error) {

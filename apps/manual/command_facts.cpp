@@ -46,18 +46,18 @@ OptionFacts facts_of(const CLI::Option& option, const CLI::App& command) {
 /// "Exit status: 0 done, 2 bad input or usage." -> {"0", "done"}, {"2", "bad input or usage"}
 std::vector<std::pair<std::string, std::string>> statuses_of(const std::string& text) {
   std::vector<std::pair<std::string, std::string>> statuses;
-  std::size_t at = 0;
-  while (at < text.size()) {
-    std::size_t end = at + 2;
+  std::size_t position = 0;
+  while (position < text.size()) {
+    std::size_t end = position + 2;
     const auto next_begins = [&] {
       return text[end] == ',' && end + 3 < text.size() && std::isdigit(static_cast<unsigned char>(text[end + 2])) &&
              text[end + 3] == ' ';
     };
     while (end < text.size() && !next_begins()) ++end;
-    std::string meaning = text.substr(at + 2, end - at - 2);
+    std::string meaning = text.substr(position + 2, end - position - 2);
     if (end >= text.size() && meaning.ends_with('.')) meaning.pop_back();
-    statuses.emplace_back(text.substr(at, 1), meaning);
-    at = end + 2;
+    statuses.emplace_back(text.substr(position, 1), meaning);
+    position = end + 2;
   }
   std::sort(statuses.begin(), statuses.end());
   return statuses;

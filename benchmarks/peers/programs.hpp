@@ -157,7 +157,8 @@ inline Answers by_auto(const std::vector<EnsembleMember>& members, int intervals
     std::ifstream log(folder / "log");
     double counted = absent;
     for (std::string line; std::getline(log, line);) {
-      if (const auto at = line.find("Total Time"); at != std::string::npos) counted = std::atof(line.c_str() + at + 10);
+      if (const auto position = line.find("Total Time"); position != std::string::npos)
+        counted = std::atof(line.c_str() + position + 10);
     }
     std::ifstream branch(folder / "fort.7");
     std::size_t found = 0;

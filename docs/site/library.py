@@ -137,7 +137,7 @@ class Library:
         return brief + " " + rest if goes_on else between.join(filter(None, (brief, rest)))
 
     def cell_of(self, node, here):
-        """The same for a table; Doxygen ends some phrases with a full stop."""
+        """Text for a table; Doxygen ends some phrases with a full stop."""
         text = self.text_of(node, here, " ")
         return text if ". " in text else text.removesuffix(".")
 
@@ -278,7 +278,7 @@ def page_of(header):
 
 def layer_of(header):
     parts = pathlib.PurePosixPath(header).parts
-    return parts[1] if len(parts) > 2 else "door"
+    return parts[1] if len(parts) > 2 else "facade"
 
 
 def first_comment(path):
@@ -304,7 +304,7 @@ def write_pages(xml, include, folder, described, introduction):
     for layer in order:
         text = described.get(layer, "All that most users of the library need, by one include")
         text = text[:1].upper() + text[1:]
-        title = "wingbeat.hpp" if layer == "door" else layer
+        title = "wingbeat.hpp" if layer == "facade" else layer
         body = f"# {title}\n\n{text}.\n\n| header | what is in it |\n| --- | --- |\n"
         entries = []
         for header in layers[layer]:

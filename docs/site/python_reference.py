@@ -230,10 +230,10 @@ class Reference:
         return "\n".join(lines)
 
     def sections(self, parts, given):
-        told = split_names(parts.get("Parameters", []))
+        stated = split_names(parts.get("Parameters", []))
         types = {name: (kind, default) for name, kind, default in given}
         lines = [table(("parameter", "type", "default", "meaning"),
-                       [(name, *types.get(name, ("", "")), meaning) for name, meaning in told.items()], self.links)]
+                       [(name, *types.get(name, ("", "")), meaning) for name, meaning in stated.items()], self.links)]
         if "Returns" in parts:
             text = re.sub(r"\b(?:an?|the) ([A-Z]\w+)\b", lambda m: m[0].replace(m[1], f"`{m[1]}`") if m[1] in self.links
                           else m[0], parts["Returns"], flags=re.I)
@@ -267,9 +267,9 @@ class Reference:
         lines.append(prose(parts[""], self.links) + "\n")
         if known:
             lines.append(f"It is a {', '.join(known)} as well.\n")
-        told = split_names(parts.get("Attributes", []))
+        stated = split_names(parts.get("Attributes", []))
         fields = self.fields(module, node)
-        fields = [(field, kind, told.get(field) or meaning) for field, kind, meaning in fields]
+        fields = [(field, kind, stated.get(field) or meaning) for field, kind, meaning in fields]
         lines.append(table(("attribute", "type", "meaning"), fields, self.links))
         lines.append(self.sections(parts, parameters_of(start, True) if made else []))
         methods = {}

@@ -172,23 +172,24 @@ void add_motion(py::module_& m) {
   py::class_<Stepped>(m, "Simulation")
       .def(py::init(&simulation_of), "design"_a, "condition"_a, "tolerance"_a, "angle"_a, "speed"_a, "current"_a,
            "pitch_angle"_a, "pitch_velocity"_a)
-      .def("copy", [](const Stepped& of) { return Stepped(of); })
-      .def("time", [](const Stepped& of) { return of.idle().time(); })
-      .def("state", [](const Stepped& of) { return array_of(of.idle().state()); })
-      .def("state_names", [](const Stepped& of) { return of.idle().state_names(); })
+      .def("copy", [](const Stepped& stepped) { return Stepped(stepped); })
+      .def("time", [](const Stepped& stepped) { return stepped.idle().time(); })
+      .def("state", [](const Stepped& stepped) { return array_of(stepped.idle().state()); })
+      .def("state_names", [](const Stepped& stepped) { return stepped.idle().state_names(); })
       .def("acting", &acting)
-      .def("stands", [](const Stepped& of) { return of.idle().stands(); })
-      .def("ended", [](const Stepped& of) { return of.idle().ended(); })
+      .def("stands", [](const Stepped& stepped) { return stepped.idle().stands(); })
+      .def("ended", [](const Stepped& stepped) { return stepped.idle().ended(); })
       .def("command", &Stepped::command, "voltage"_a.none(true))
       .def("command_samples",
-           [](Stepped& of, std::vector<double> times, std::vector<double> voltages) {
-             of.idle().command(std::move(times), std::move(voltages));
+           [](Stepped& stepped, std::vector<double> times, std::vector<double> voltages) {
+             stepped.idle().command(std::move(times), std::move(voltages));
            })
-      .def("step_to", [](Stepped& of, double until,
-                         const std::optional<std::string>& event) { return events_of(of.step_to(until, event)); })
+      .def("step_to", [](Stepped& stepped, double until,
+                         const std::optional<std::string>& event) { return events_of(stepped.step_to(until, event)); })
       .def("record", &recorded)
-      .def("save", [](const Stepped& of) { return py::tuple(py::cast(of.idle().save().numbers)); })
-      .def("restore", [](Stepped& of, std::vector<double> numbers) { of.idle().restore({std::move(numbers)}); });
+      .def("save", [](const Stepped& stepped) { return py::tuple(py::cast(stepped.idle().save().numbers)); })
+      .def("restore",
+           [](Stepped& stepped, std::vector<double> numbers) { stepped.idle().restore({std::move(numbers)}); });
 }
 
 }  // namespace wingbeat::python

@@ -52,8 +52,8 @@ py::tuple motor_curves(const Design<double>& design, std::optional<double> volta
       check_cancellation();
       if (!(speed >= 0.0) || !std::isfinite(speed))
         throw InputError("", 0, 0, "speed", "must be >= 0 rad/s and finite");
-      const SteadyMotor<double> at = steady_motor(vehicle.motor, v, speed);
-      append_row(columns, {at.current, at.torque, at.power_electrical, at.power_mechanical});
+      const SteadyMotor<double> steady = steady_motor(vehicle.motor, v, speed);
+      append_row(columns, {steady.current, steady.torque, steady.power_electrical, steady.power_mechanical});
     }
   });
   const SteadyMotor<double> stalled = steady_motor(vehicle.motor, v, 0.0), idle = steady_motor(vehicle.motor, v, free);
@@ -90,7 +90,8 @@ py::tuple kinematics(const Design<double>& design, const std::vector<double>& an
       check_cancellation();
       require_finite("crank_angle", theta);
       const CrankKinematics<double> k = crank_kinematics(vehicle.transmission, std::sin(theta), std::cos(theta));
-      append_row(columns, {stroke_angle(k), k.stroke_slope, k.stroke_curve, k.crank_lever, k.wing_lever});
+      append_row(columns,
+                 {stroke_angle(k), k.stroke_slope, k.stroke_second_derivative, k.crank_jacobian, k.wing_jacobian});
     }
   });
   const Reversals found = reversals(vehicle.transmission);

@@ -160,10 +160,10 @@ py::dict tolerance(const std::string& file, const std::vector<std::string>& over
 py::dict linearise(const Design<double>& design, const std::string& condition, std::optional<double> frequency,
                    std::optional<double> lift, bool allow_extrapolation, int cycles, double hinge_offset, bool maps) {
   ControlOptions options;
-  options.at.condition = choice<Condition>("condition", condition);
-  options.at.frequency = frequency;
-  options.at.lift = lift;
-  options.at.allow_extrapolation = allow_extrapolation;
+  options.operating_point.condition = choice<Condition>("condition", condition);
+  options.operating_point.frequency = frequency;
+  options.operating_point.lift = lift;
+  options.operating_point.allow_extrapolation = allow_extrapolation;
   options.step_cycles = cycles;
   options.hinge_offset = hinge_offset;
   options.allocation_maps = maps;

@@ -16,15 +16,18 @@
 namespace wingbeat {
 namespace {
 
-void one_by_one(const Vehicle<double>& v, std::span<const double> theta, std::span<Configuration<double>> at) {
-  for (std::size_t n = 0; n < theta.size(); ++n) at[n] = configuration_at(v, std::sin(theta[n]), std::cos(theta[n]));
+void one_by_one(const Vehicle<double>& v, std::span<const double> theta,
+                std::span<Configuration<double>> configurations) {
+  for (std::size_t n = 0; n < theta.size(); ++n)
+    configurations[n] = configuration_at(v, std::sin(theta[n]), std::cos(theta[n]));
 }
 
 #ifdef WINGBEAT_LANES
 
 using Lanes = Pack<WINGBEAT_LANES, 2>;
 
-void on_lanes(const Vehicle<double>& v, std::span<const double> theta, std::span<Configuration<double>> at) {
+void on_lanes(const Vehicle<double>& v, std::span<const double> theta,
+              std::span<Configuration<double>> configurations) {
   constexpr std::size_t count = Lanes::lanes;
   const CrankGeometry<Lanes> geometry = geometry_of(cast<Lanes>(v.transmission.slider_crank));
   const double stiffness = v.wing_count * v.spring.stiffness;
@@ -36,14 +39,14 @@ void on_lanes(const Vehicle<double>& v, std::span<const double> theta, std::span
     const CrankKinematics<Lanes> k = crank_kinematics(geometry, sin(angle), cos(angle));
     const auto scatter = [&](const Lanes& from, const auto& to) {
       from.store(number.data());
-      for (std::size_t n = 0; n < used; ++n) to(at[begin + n]) = number[n];
+      for (std::size_t n = 0; n < used; ++n) to(configurations[begin + n]) = number[n];
     };
     scatter(k.stroke_offset, [](auto& c) -> double& { return c.kinematics.stroke_offset; });
     scatter(k.tan_stroke, [](auto& c) -> double& { return c.kinematics.tan_stroke; });
     scatter(k.stroke_slope, [](auto& c) -> double& { return c.kinematics.stroke_slope; });
-    scatter(k.stroke_curve, [](auto& c) -> double& { return c.kinematics.stroke_curve; });
-    scatter(k.wing_lever, [](auto& c) -> double& { return c.kinematics.wing_lever; });
-    scatter(k.crank_lever, [](auto& c) -> double& { return c.kinematics.crank_lever; });
+    scatter(k.stroke_second_derivative, [](auto& c) -> double& { return c.kinematics.stroke_second_derivative; });
+    scatter(k.wing_jacobian, [](auto& c) -> double& { return c.kinematics.wing_jacobian; });
+    scatter(k.crank_jacobian, [](auto& c) -> double& { return c.kinematics.crank_jacobian; });
     scatter(stiffness > 0.0 ? Lanes(stiffness) * stroke_angle(k) : Lanes(0.0),
             [](auto& c) -> double& { return c.spring_moment; });
   }
@@ -53,11 +56,12 @@ void on_lanes(const Vehicle<double>& v, std::span<const double> theta, std::span
 
 }  // namespace
 
-void configurations_at(const Vehicle<double>& v, std::span<const double> theta, std::span<Configuration<double>> at) {
+void configurations_at(const Vehicle<double>& v, std::span<const double> theta,
+                       std::span<Configuration<double>> configurations) {
 #ifdef WINGBEAT_LANES
-  if (v.transmission.type == TransmissionType::slider_crank) return on_lanes(v, theta, at);
+  if (v.transmission.type == TransmissionType::slider_crank) return on_lanes(v, theta, configurations);
 #endif
-  one_by_one(v, theta, at);
+  one_by_one(v, theta, configurations);
 }
 
 }  // namespace wingbeat

@@ -54,7 +54,7 @@ template <class S>
 std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metrics<S>& m) {
   std::array<S, domain_limit_count> excess;
   excess.fill(S(-1.0));
-  const auto at = [&](DomainLimit limit) -> S& { return excess[std::size_t(limit)]; };
+  const auto excess_of = [&](DomainLimit limit) -> S& { return excess[std::size_t(limit)]; };
   const auto larger = [](const S& a, const S& b) {
     return value_of(a) > value_of(b) || std::isnan(value_of(a)) ? a : b;
   };
@@ -62,32 +62,34 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
 
   if (air) {
     const Range range = angle_range(v);
-    at(DomainLimit::angle_of_attack) = (S(range.low) - m[Metric::angle_of_attack_min]) / S(angle_of_attack_highest_deg);
+    excess_of(DomainLimit::angle_of_attack) =
+        (S(range.low) - m[Metric::angle_of_attack_min]) / S(angle_of_attack_highest_deg);
     // At the reversals alpha is 90 deg, whatever the pitching.
     if (pitches(v)) {
-      at(DomainLimit::angle_of_attack) =
-          larger(m[Metric::angle_of_attack_max] / S(range.high) - S(1.0), at(DomainLimit::angle_of_attack));
+      excess_of(DomainLimit::angle_of_attack) =
+          larger(m[Metric::angle_of_attack_max] / S(range.high) - S(1.0), excess_of(DomainLimit::angle_of_attack));
     } else if (range.high < angle_of_attack_highest_deg - angle_slack_deg) {
-      at(DomainLimit::angle_of_attack) =
-          larger(S(1.0 - range.high / angle_of_attack_highest_deg), at(DomainLimit::angle_of_attack));
+      excess_of(DomainLimit::angle_of_attack) =
+          larger(S(1.0 - range.high / angle_of_attack_highest_deg), excess_of(DomainLimit::angle_of_attack));
     }
-    at(DomainLimit::flow_speed) = m[Metric::flapping_velocity_peak] * S(reference_radius(v) / flow_speed_max) - S(1.0);
+    excess_of(DomainLimit::flow_speed) =
+        m[Metric::flapping_velocity_peak] * S(reference_radius(v) / flow_speed_max) - S(1.0);
   }
   if (drive_of(v).stroke_is_fixed) {
-    if (has_wings(v)) at(DomainLimit::stroke) = S(stroke_reach_deg(v) / stroke_max_deg(v) - 1.0);
+    if (has_wings(v)) excess_of(DomainLimit::stroke) = S(stroke_reach_deg(v) / stroke_max_deg(v) - 1.0);
   } else {
-    at(DomainLimit::stroke) = m[Metric::stroke_amplitude] * S(degrees_per_radian / stroke_max_deg(v)) - S(1.0);
+    excess_of(DomainLimit::stroke) = m[Metric::stroke_amplitude] * S(degrees_per_radian / stroke_max_deg(v)) - S(1.0);
   }
 
   if (heats_up(v.thermal)) {
-    at(DomainLimit::winding_temperature) =
+    excess_of(DomainLimit::winding_temperature) =
         (m[Metric::winding_temperature] + S(zero_celsius)) / S(v.thermal.winding_temperature_max) - S(1.0);
   }
 
   const WingLimits<double>& wings = v.wing_limits;
   if (air && !std::isnan(wings.reynolds_number_per_speed)) {
     const S& Re = m[Metric::reynolds_number];
-    S& excess_Re = at(DomainLimit::reynolds_number);
+    S& excess_Re = excess_of(DomainLimit::reynolds_number);
     if (wings.reynolds_number_min > 0.0) excess_Re = S(1.0) - Re / S(wings.reynolds_number_min);
     if (std::isfinite(wings.reynolds_number_max)) {
       excess_Re = larger(Re / S(wings.reynolds_number_max) - S(1.0), excess_Re);
@@ -102,16 +104,16 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
     return larger(efficiency - S(1.0 + efficiency_slack), -efficiency - S(efficiency_slack));
   };
   if (!(value_of(P_e) > 0.0 && std::isfinite(value_of(P_e)))) {
-    at(DomainLimit::input_power) = S(1.0);
+    excess_of(DomainLimit::input_power) = S(1.0);
   } else {
     const S share = value_of(P_residual) < 0.0 ? -P_residual / P_e : P_residual / P_e;
-    at(DomainLimit::formulation_residual) = share / S(formulation_residual_max) - S(1.0);
-    at(DomainLimit::motor_efficiency) = beyond(P_m / P_e);
+    excess_of(DomainLimit::formulation_residual) = share / S(formulation_residual_max) - S(1.0);
+    excess_of(DomainLimit::motor_efficiency) = beyond(P_m / P_e);
   }
   if (air && value_of(P_m) > 0.0) {
-    at(DomainLimit::mechanism_efficiency) = beyond(P_aero / P_m);
+    excess_of(DomainLimit::mechanism_efficiency) = beyond(P_aero / P_m);
   } else if (air && !(std::abs(value_of(P_aero)) <= efficiency_slack * std::abs(value_of(P_e)))) {
-    at(DomainLimit::mechanism_efficiency) = S(1.0);
+    excess_of(DomainLimit::mechanism_efficiency) = S(1.0);
   }
   return excess;
 }
@@ -212,12 +214,13 @@ std::vector<DomainEvidence> domain_evidence(const Vehicle<double>& v, const Metr
         m[Metric::angle_of_attack_min], range.low, range.high);
   }
   const bool fixed = drive_of(v).stroke_is_fixed, meet = meeting_angle_deg(v) < law_stroke_max_deg(v);
-  const double most = stroke_max_deg(v);
+  const double max_stroke = stroke_max_deg(v);
   add(DomainLimit::stroke,
       meet    ? Quantity::wings_meet
       : fixed ? Quantity::stroke_angle
               : Quantity::stroke_amplitude,
-      fixed ? stroke_reach_deg(v) : degrees_per_radian * m[Metric::stroke_amplitude], fixed ? -most : 0.0, most);
+      fixed ? stroke_reach_deg(v) : degrees_per_radian * m[Metric::stroke_amplitude], fixed ? -max_stroke : 0.0,
+      max_stroke);
   add(DomainLimit::formulation_residual, Quantity::residual_share, std::abs(m[Metric::power_residual] / P_e), 0.0,
       formulation_residual_max);
   if (P_m > 0.0) {

@@ -47,8 +47,8 @@ struct LoadsSystem : System {
   auto fixed_nodes() const {
     if constexpr (waved) {
       std::array<solver::FixedNode, 3> nodes;
-      const std::array<double, 3> at = nodes_of(wave);
-      for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n] = {at[n], wave_half};
+      const std::array<double, 3> times = nodes_of(wave);
+      for (std::size_t n = 0; n < nodes.size(); ++n) nodes[n] = {times[n], wave_half};
       return nodes;
     } else {
       return System::fixed_nodes();
@@ -131,15 +131,15 @@ struct LoadsSystem : System {
     using std::sin;
     const auto own = own_signs(signs);
     const auto& system = driven(x);
-    const At at = phase(x);
-    const auto of = system.template rates<quadratures>(at, y, own);
+    const At here = phase(x);
+    const auto rates_of_system = system.template rates<quadratures>(here, y, own);
     solver::Rates<LoadsSystem> r;
-    r.dy = of.dy;
-    r.switches = of.switches;
+    r.dy = rates_of_system.dy;
+    r.switches = rates_of_system.switches;
     if constexpr (quadratures) {
-      std::copy(of.dq.begin(), of.dq.end(), r.dq.begin());
-      const Motion<Real> m = system.motion(at, y, own);
-      const Real beta = system.stroke_angle(m, y), time = of.dq[std::size_t(Integral::time)];
+      std::copy(rates_of_system.dq.begin(), rates_of_system.dq.end(), r.dq.begin());
+      const Motion<Real> m = system.motion(here, y, own);
+      const Real beta = system.stroke_angle(m, y), time = rates_of_system.dq[std::size_t(Integral::time)];
       r.dq[index_of(BodyIntegral::lift_sideways)] = m.aero.lift * cos(beta) * time;
       r.dq[index_of(BodyIntegral::lift_forward)] = m.aero.lift * sin(beta) * time;
       r.dq[index_of(BodyIntegral::moment)] = m.aero.moment * time;
@@ -153,9 +153,9 @@ struct LoadsSystem : System {
   template <class At>
   decltype(auto) driven([[maybe_unused]] const At& x) const {
     if constexpr (waved) {
-      System of = *this;
-      of.vehicle.voltage = voltage_of_wave(wave, this->vehicle.voltage, x);
-      return of;
+      System driven_system = *this;
+      driven_system.vehicle.voltage = voltage_of_wave(wave, this->vehicle.voltage, x);
+      return driven_system;
     } else {
       return static_cast<const System&>(*this);
     }
@@ -190,7 +190,7 @@ struct LoadsSystem : System {
 /// A cycle of a system as one of the system with loads, without those.
 template <class System>
 solver::Iterate<LoadsSystem<System>> with_loads(const solver::Iterate<System>& cycle) {
-  solver::Iterate<LoadsSystem<System>> of;
+  solver::Iterate<LoadsSystem<System>> iterate;
   for (const auto& step : cycle.steps) {
     solver::Step<LoadsSystem<System>> to{step.x, step.h, step.y, {}, {}, {}};
     to.signs.fill(1.0);
@@ -199,20 +199,20 @@ solver::Iterate<LoadsSystem<System>> with_loads(const solver::Iterate<System>& c
     to.first.switches = step.first.switches;
     std::copy(step.first.dq.begin(), step.first.dq.end(), to.first.dq.begin());
     std::copy(step.dq.begin(), step.dq.end(), to.dq.begin());
-    of.steps.push_back(to);
+    iterate.steps.push_back(to);
   }
-  of.stages = cycle.stages;
-  of.switches = cycle.switches;
-  of.end = cycle.end;
-  of.status = cycle.status;
-  of.method = cycle.method;
-  of.stop = cycle.stop;
-  of.largest_step = cycle.largest_step;
-  of.tolerance = cycle.tolerance;
-  of.error_sum = cycle.error_sum;
-  of.switch_scale = cycle.switch_scale;
-  std::copy(cycle.integral_scale.begin(), cycle.integral_scale.end(), of.integral_scale.begin());
-  return of;
+  iterate.stages = cycle.stages;
+  iterate.switches = cycle.switches;
+  iterate.end = cycle.end;
+  iterate.status = cycle.status;
+  iterate.method = cycle.method;
+  iterate.stop = cycle.stop;
+  iterate.largest_step = cycle.largest_step;
+  iterate.tolerance = cycle.tolerance;
+  iterate.error_sum = cycle.error_sum;
+  iterate.switch_scale = cycle.switch_scale;
+  std::copy(cycle.integral_scale.begin(), cycle.integral_scale.end(), iterate.integral_scale.begin());
+  return iterate;
 }
 
 /// Ends a step of a recorded cycle at x, unless one does within rounding.

@@ -17,8 +17,9 @@ constexpr int slots = gradient_slots;
 template <class Visit>
 void for_each_jet(OrbitGradient& g, const Visit& visit) {
   for (J& m : g.metrics.values) visit(m);
-  for (GradientInstant& at : g.instants) {
-    for (J* x : {&at.crank_speed, &at.current, &at.flapping_velocity, &at.lift, &at.rod_force, &at.motor_torque}) {
+  for (GradientInstant& instant : g.instants) {
+    for (J* x : {&instant.crank_speed, &instant.current, &instant.flapping_velocity, &instant.lift, &instant.rod_force,
+                 &instant.motor_torque}) {
       visit(*x);
     }
   }
@@ -75,9 +76,9 @@ OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle&
   // A direct drive's frequency is its supply's: no voltage follows it, and its slot is a third state's.
   const bool voltage_varies = drive_of(vehicle).voltage_sets_frequency;
   if (voltage_varies) vehicle.voltage.v[gradient_voltage_slot] = 1.0;
-  const MotorTemperatures<J> at{J(orbit.temperatures.winding), J(orbit.temperatures.casing)};
+  const MotorTemperatures<J> temperatures{J(orbit.temperatures.winding), J(orbit.temperatures.casing)};
   const bool warm = heats_up(vehicle.thermal);
-  OrbitGradient g = repeat(orbit, warm ? with_motor_at(vehicle, at) : vehicle, given, options);
+  OrbitGradient g = repeat(orbit, warm ? with_motor_at(vehicle, temperatures) : vehicle, given, options);
   // Under thermal runaway the temperatures are the last that were looked at, and no fixed point.
   const bool runs_away = warm && orbit.temperatures.winding >= copper_melting_point;
   if (runs_away) g.regular = false;

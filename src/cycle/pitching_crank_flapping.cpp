@@ -14,7 +14,7 @@ using PitchCrankEvidence = StatusEvidence::Kind;
 
 /// The vehicle with the largest inertia that its wings have at any pitch: whether its equations have one solution must
 /// not depend on how they pitch.
-Vehicle<double> of_most_inertia(Vehicle<double> vehicle) {
+Vehicle<double> of_max_inertia(Vehicle<double> vehicle) {
   vehicle.wings.added_inertia = std::max(vehicle.pitch.air.rr, vehicle.pitch.pitch_inertia);
   return vehicle;
 }
@@ -23,13 +23,13 @@ Vehicle<double> of_most_inertia(Vehicle<double> vehicle) {
 /// magnitude alone, at most a right angle and the stop.
 double quasi_static_pitch(const Vehicle<double>& v, double stroke_velocity) {
   const PitchingWings<double>& p = v.pitch;
-  const double most = std::min(0.5 * pi, p.hinge.stop);
+  const double max_angle = std::min(0.5 * pi, p.hinge.stop);
   const auto holds = [&](double psi) {
-    const PitchState<double> at = pitch_state(-psi, 0.0, std::abs(stroke_velocity));
-    return p.hinge.stiffness * psi < aero_loads(v.wings, p, at, 1.0, 1.0).pitch_moment;
+    const PitchState<double> state = pitch_state(-psi, 0.0, std::abs(stroke_velocity));
+    return p.hinge.stiffness * psi < aero_loads(v.wings, p, state, 1.0, 1.0).pitch_moment;
   };
-  if (holds(most)) return most;
-  return bisect(holds, 0.0, most).before;
+  if (holds(max_angle)) return max_angle;
+  return bisect(holds, 0.0, max_angle).before;
 }
 
 /// Searches from several starts: where the pitching is lightly damped, the return map does not forget them, and more
@@ -43,7 +43,7 @@ class PitchingCrankSearch {
   PitchingCrankSearch(const Vehicle<double>& vehicle, const SteadyOptions& options)
       : vehicle_(vehicle),
         options_(options),
-        statics_(static_balance(of_most_inertia(vehicle))),
+        statics_(static_balance(of_max_inertia(vehicle))),
         no_load_(no_load_speed(vehicle)),
         balanced_(balanced_speed(vehicle)),
         typical_(typical_state()) {}
@@ -71,14 +71,14 @@ class PitchingCrankSearch {
 
   /// Largest distance of two states, over their typical sizes.
   double apart(const State& a, const State& b) const {
-    double most = 0.0;
-    for (std::size_t n = 0; n < N; ++n) most = std::max(most, std::abs(a[n] - b[n]) / typical_[n]);
-    return most;
+    double highest = 0.0;
+    for (std::size_t n = 0; n < N; ++n) highest = std::max(highest, std::abs(a[n] - b[n]) / typical_[n]);
+    return highest;
   }
 
   /// Keeps the orbit found from there, if it is stable and none that is known.
   /// It takes at most a part of the work that is left: one start may not take what is left for the others.
-  void attempt(const State& guess, SharedSearch& shared, long most, bool near = false);
+  void attempt(const State& guess, SharedSearch& shared, long max_evaluations, bool near = false);
   std::optional<std::size_t> reached_by(const State& settled) const;
   SteadyFlapping undecided(SteadyFlapping result) const;
 
@@ -97,11 +97,11 @@ class PitchingCrankSearch {
 };
 
 template <int N>
-void PitchingCrankSearch<N>::attempt(const State& guess, SharedSearch& shared, long most, bool near) {
+void PitchingCrankSearch<N>::attempt(const State& guess, SharedSearch& shared, long max_evaluations, bool near) {
   constexpr double same = 1e-3;  // orbits that are nearer to each other are one
   const System system(vehicle_, typical_, 1e-4 * no_load_);
   if (!system.admissible(guess)) return;
-  solver::WorkBudget part = shared.work.part(most);
+  solver::WorkBudget part = shared.work.part(max_evaluations);
   OrbitSearch<System> orbit(system, options_, part);
   const bool found = near ? orbit.search_near(guess) : orbit.search(guess);
   shared.work.used += part.used;
@@ -168,10 +168,10 @@ SteadyFlapping PitchingCrankSearch<N>::run(const StartUp& start_up, SharedSearch
     }
     if (stable_.empty()) {
       const double slope = crank_kinematics(vehicle_.transmission, 0.0, 1.0).stroke_slope;
-      const auto most = [&] { return stable_.empty() ? part : part_with_orbit; };
+      const auto max_part = [&] { return stable_.empty() ? part : part_with_orbit; };
       attempt(turning(balanced_.slowest, quasi_static_pitch(vehicle_, slope * balanced_.slowest)), shared, part);
       attempt(turning(balanced_.slowest, 0.0), shared, part);
-      attempt(turning(no_load_, std::min(0.5 * pi, vehicle_.pitch.hinge.stop)), shared, most());
+      attempt(turning(no_load_, std::min(0.5 * pi, vehicle_.pitch.hinge.stop)), shared, max_part());
       if (stable_.empty()) attempt(turning(no_load_, 0.0), shared, part);
     }
   }

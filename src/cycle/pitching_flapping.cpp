@@ -60,9 +60,9 @@ class PitchingSearch {
 
   /// Largest distance of two states, over their typical sizes.
   double apart(const State& a, const State& b) const {
-    double most = 0.0;
-    for (std::size_t n = 0; n < N; ++n) most = std::max(most, std::abs(a[n] - b[n]) / typical_[n]);
-    return most;
+    double highest = 0.0;
+    for (std::size_t n = 0; n < N; ++n) highest = std::max(highest, std::abs(a[n] - b[n]) / typical_[n]);
+    return highest;
   }
 
   const Vehicle<double>& vehicle_;
@@ -88,8 +88,8 @@ SteadyFlapping PitchingSearch<N>::run(const StartUp& start_up, SharedSearch& sha
   bool cut_short = false;  // some start, when the budget of work was spent
   State reached_from_rest{};
   // One start may not take what is left for the others.
-  const auto attempt = [&](const State& guess, bool near, long most) {
-    solver::WorkBudget part = shared.work.part(most);
+  const auto attempt = [&](const State& guess, bool near, long max_evaluations) {
+    solver::WorkBudget part = shared.work.part(max_evaluations);
     OrbitSearch<System> orbit(system, options_, part);
     const bool found = near ? orbit.search_near(guess) : orbit.search(guess);
     shared.work.used += part.used;

@@ -7,13 +7,13 @@
 namespace wingbeat::detail {
 
 /// What wings that pitch have instead of the metrics of the pitch law.
-inline void set_pitch_metrics(const PitchGradient& of, Metrics<GradientJet>& m) {
-  m[Metric::pitch_amplitude] = degrees_per_radian * of.amplitude;
-  m[Metric::pitch_phase] = degrees_per_radian * of.phase;
-  if (!(of.amplitude.a > still_pitch))
+inline void set_pitch_metrics(const PitchGradient& gradient, Metrics<GradientJet>& m) {
+  m[Metric::pitch_amplitude] = degrees_per_radian * gradient.amplitude;
+  m[Metric::pitch_phase] = degrees_per_radian * gradient.phase;
+  if (!(gradient.amplitude.a > still_pitch))
     m[Metric::pitch_phase] = GradientJet(absent), make_absent(m[Metric::pitch_phase]);
-  m[Metric::angle_of_attack_min] = degrees_per_radian * of.angle_of_attack_min;
-  m[Metric::angle_of_attack_max] = degrees_per_radian * of.angle_of_attack_max;
+  m[Metric::angle_of_attack_min] = degrees_per_radian * gradient.angle_of_attack_min;
+  m[Metric::angle_of_attack_max] = degrees_per_radian * gradient.angle_of_attack_max;
 }
 
 template <class System>

@@ -41,7 +41,7 @@ Minimum least_of(const std::array<double, angle_count>& samples) {
 /// What levers reach over a turn, from the links alone.
 struct LeverReach {
   double wing_lever_min;  ///< g [m]
-  double crank_lever;     ///< |h| [m]
+  double crank_jacobian;  ///< |h| [m]
   double ratio_min;       ///< h / B1 [m]
 };
 
@@ -86,7 +86,7 @@ bool is_certainly_unique(const Vehicle<double>& v, const LeverReach& reach) {
 bool is_certain_to_advance(const Vehicle<double>& v, const LeverReach& reach, double stall) {
   if (!(reach.wing_lever_min > 0.0)) return false;
   const double force = v.wing_count * v.spring.stiffness * stroke_reach(v.transmission) / reach.wing_lever_min;
-  const double load = force * (reach.crank_lever + v.friction.radius) + std::abs(v.load_torque) + v.friction.torque;
+  const double load = force * (reach.crank_jacobian + v.friction.radius) + std::abs(v.load_torque) + v.friction.torque;
   return stall - torque_before_gear(v.motor, load) - v.motor.friction_torque > far_torque * stall;
 }
 
@@ -118,7 +118,7 @@ StaticBalance static_balance(const Vehicle<double>& v) {
   for (std::size_t n = 0; n < angle_count; ++n) {
     const CrankKinematics<double> k = crank_kinematics(v.transmission, circle.sine[n], circle.cosine[n]);
     inertia[n] = min_inertia(v, k);
-    lever[n] = k.wing_lever;
+    lever[n] = k.wing_jacobian;
     if (springs) advance[n] = advance_torque(v, k, spring_moment(v, k), s.stall_torque);
   }
   Minimum least_inertia = least_of(inertia), least_lever = least_of(lever);
@@ -126,8 +126,8 @@ StaticBalance static_balance(const Vehicle<double>& v) {
   const LeverReach reach = lever_reach(v.transmission);
   if (!is_certainly_unique(v, reach)) {
     const double J = v.motor.inertia, typical = typical_lever(v.transmission);
-    least_lever = least_value([&](double angle) { return kinematics_at(v, angle).wing_lever; },
-                              [&](double from, double to) { return bounds.wing_lever(from, to); }, 0.0, two_pi,
+    least_lever = least_value([&](double angle) { return kinematics_at(v, angle).wing_jacobian; },
+                              [&](double from, double to) { return bounds.wing_jacobian(from, to); }, 0.0, two_pi,
                               far_lever * typical, accuracy * typical, least_lever);
     // Beyond a pole of F the inertia says nothing.
     if (least_lever.value > 0.0) {
@@ -136,8 +136,8 @@ StaticBalance static_balance(const Vehicle<double>& v) {
                                   far_inertia * J, accuracy * J, least_inertia);
     }
   }
-  s.inertia_angle = wrap_angle(least_inertia.at), s.inertia_min = least_inertia.value;
-  s.lever_angle = wrap_angle(least_lever.at), s.lever_min = least_lever.value;
+  s.inertia_angle = wrap_angle(least_inertia.argument), s.inertia_min = least_inertia.value;
+  s.lever_angle = wrap_angle(least_lever.argument), s.lever_min = least_lever.value;
   if (springs) {
     Minimum least = least_of(advance);
     if (!is_certain_to_advance(v, reach, s.stall_torque)) {
@@ -146,7 +146,7 @@ StaticBalance static_balance(const Vehicle<double>& v) {
                           [&](double from, double to) { return stall - bounds.high(from, to); }, 0.0, two_pi,
                           far_torque * s.stall_torque, accuracy * s.stall_torque, least);
     }
-    s.advance_angle = wrap_angle(least.at), s.advance_min = least.value;
+    s.advance_angle = wrap_angle(least.argument), s.advance_min = least.value;
   }
   return s;
 }
@@ -168,7 +168,7 @@ LockInterval lock_between(const Vehicle<double>& v, double from, double to) {
   if (step > 1e-9) {
     const Minimum best = minimise([&](double angle) { return -lock_margin(v, angle); },
                                   std::max(from, lock.angle - step), std::min(to, lock.angle + step), 1e-9);
-    note(best.at, -best.value);
+    note(best.argument, -best.value);
   }
   if (lock.from >= two_pi) lock.from -= two_pi, lock.to -= two_pi;
   lock.angle = wrap_angle(lock.angle);
@@ -233,7 +233,7 @@ bool certainly_advances(const Vehicle<double>& v) {
 
 double uniqueness(const Vehicle<double>& v, double crank_angle) {
   const CrankKinematics<double> k = kinematics_at(v, crank_angle);
-  const double lever = k.wing_lever / typical_lever(v.transmission);
+  const double lever = k.wing_jacobian / typical_lever(v.transmission);
   if (!(lever > 0.0)) return lever;
   return std::min(lever, min_inertia(v, k) / v.motor.inertia);
 }
@@ -266,8 +266,8 @@ std::vector<LoadPlace<double>> load_places(const Vehicle<double>& v) {
   constexpr std::size_t stride = 4;
   places.reserve(angle_count / stride);
   for (std::size_t n = 0; n < angle_count; n += stride) {
-    const Configuration<double> at = configuration_at(v, circle.sine[n], circle.cosine[n]);
-    places.push_back(load_place(v, at.kinematics, at.spring_moment));
+    const Configuration<double> configuration = configuration_at(v, circle.sine[n], circle.cosine[n]);
+    places.push_back(load_place(v, configuration.kinematics, configuration.spring_moment));
   }
   return places;
 }

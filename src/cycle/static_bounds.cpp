@@ -12,8 +12,8 @@ KinematicBounds kinematic_bounds(const SliderCrank<double>& c, double from, doub
   const CrankKinematics<Enclosure> k = crank_kinematics(cast<Enclosure>(c), arc.sine, arc.cosine);
   // Where the levers conserve power, their ratio is the slope.
   const Enclosure ratio =
-      c.formulation == Formulation::virtual_work ? k.stroke_slope : k.crank_lever * inverse_of(k.wing_lever);
-  return {atan(k.tan_stroke), k.stroke_slope, k.wing_lever, ratio};
+      c.formulation == Formulation::virtual_work ? k.stroke_slope : k.crank_jacobian * inverse_of(k.wing_jacobian);
+  return {atan(k.tan_stroke), k.stroke_slope, k.wing_jacobian, ratio};
 }
 
 /// With the diagonal s from the rocker's axis to the crank pin, phi is the angle of the diagonal less that of the
@@ -32,7 +32,7 @@ KinematicBounds kinematic_bounds(const FourBar<double>& f, double from, double t
   KinematicBounds k;
   k.stroke_angle = n_s * (to_pin - at_axis - Enclosure(f.ground_angle));
   k.stroke_slope = n_s * r / s2 * (r - d * arc.cosine + d * arc.sine * (l / p - cos_mu) / sin_mu);
-  k.wing_lever = p * sin_mu / n_s;
+  k.wing_jacobian = p * sin_mu / n_s;
   k.lever_ratio = k.stroke_slope;
   return k;
 }
@@ -85,7 +85,7 @@ KinematicBounds kinematic_bounds(const StrokeTable<double>& t, double from, doub
   const Enclosure scale(t.scale);
   k.stroke_angle = scale * k.stroke_angle;
   k.stroke_slope = scale * k.stroke_slope;
-  k.wing_lever = Enclosure(t.reference_radius);
+  k.wing_jacobian = Enclosure(t.reference_radius);
   k.lever_ratio = k.stroke_slope;
   return k;
 }
@@ -99,7 +99,7 @@ StaticBounds::Torques StaticBounds::torques(double from, double to) const {
   const Enclosure moment = Enclosure(v_.wing_count * v_.spring.stiffness) * k.stroke_angle;
   Torques t{moment * k.lever_ratio + Enclosure(v_.load_torque), Enclosure(v_.friction.torque)};
   if (v_.friction.radius > 0.0) {
-    t.friction = t.friction + Enclosure(v_.friction.radius) * abs(moment * inverse_of(k.wing_lever));
+    t.friction = t.friction + Enclosure(v_.friction.radius) * abs(moment * inverse_of(k.wing_jacobian));
   }
   return t;
 }
@@ -128,7 +128,7 @@ Enclosure StaticBounds::min_inertia(const KinematicBounds& k) const {
                            v_.transmission.slider_crank.formulation == Formulation::rod_force);
   Enclosure least = Enclosure(J) + wings * (conserves ? square(k.stroke_slope) : k.stroke_slope * k.lever_ratio);
   if (v_.friction.radius > 0.0) {
-    least = least - wings * Enclosure(v_.friction.radius) * abs(k.stroke_slope * inverse_of(k.wing_lever));
+    least = least - wings * Enclosure(v_.friction.radius) * abs(k.stroke_slope * inverse_of(k.wing_jacobian));
   }
   return least;
 }
@@ -137,7 +137,7 @@ Enclosure StaticBounds::min_inertia(double from, double to) const { return min_i
 
 Enclosure StaticBounds::uniqueness(double from, double to) const {
   const KinematicBounds k = kinematics(from, to);
-  const Enclosure lever = k.wing_lever * Enclosure(1.0 / typical_lever(v_.transmission));
+  const Enclosure lever = k.wing_jacobian * Enclosure(1.0 / typical_lever(v_.transmission));
   if (!(lever.value.low > 0.0)) return {{-infinity, lever.value.high}, {-infinity, infinity}};
   return min(lever, min_inertia(k) * Enclosure(1.0 / v_.motor.inertia));
 }

@@ -8,10 +8,10 @@ namespace wingbeat::detail {
 
 /// Stroke angle and levers over a range of crank angles.
 struct KinematicBounds {
-  Enclosure stroke_angle;  ///< beta [rad]
-  Enclosure stroke_slope;  ///< B1 [1]
-  Enclosure wing_lever;    ///< g [m]
-  Enclosure lever_ratio;   ///< h / g [1]
+  Enclosure stroke_angle;   ///< beta [rad]
+  Enclosure stroke_slope;   ///< B1 [1]
+  Enclosure wing_jacobian;  ///< g [m]
+  Enclosure lever_ratio;    ///< h / g [1]
 };
 
 KinematicBounds kinematic_bounds(const SliderCrank<double>& c, double from, double to);
@@ -29,7 +29,7 @@ class StaticBounds {
   /// min_inertia() [kg m2].
   Enclosure min_inertia(double from, double to) const;
   /// g [m].
-  Enclosure wing_lever(double from, double to) const { return kinematics(from, to).wing_lever; }
+  Enclosure wing_jacobian(double from, double to) const { return kinematics(from, to).wing_jacobian; }
   /// uniqueness() [1].
   Enclosure uniqueness(double from, double to) const;
 

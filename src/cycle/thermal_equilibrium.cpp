@@ -39,24 +39,24 @@ double ThermalEquilibrium::weighted(const MotorTemperatures<double>& a, const Mo
 }
 
 MotorTemperatures<double> ThermalEquilibrium::secant(const Trial& last) const {
-  if (!before_) return last.leads_to;
-  const auto r = difference(last.leads_to, last.at);
-  const auto dr = difference(r, difference(before_->leads_to, before_->at));
+  if (!before_) return last.resulting;
+  const auto r = difference(last.resulting, last.assumed);
+  const auto dr = difference(r, difference(before_->resulting, before_->assumed));
   const double share = weighted(dr, r) / weighted(dr, dr);
-  if (!std::isfinite(share)) return last.leads_to;
-  const auto dg = difference(last.leads_to, before_->leads_to);
-  return {last.leads_to.winding - share * dg.winding, last.leads_to.casing - share * dg.casing};
+  if (!std::isfinite(share)) return last.resulting;
+  const auto dg = difference(last.resulting, before_->resulting);
+  return {last.resulting.winding - share * dg.winding, last.resulting.casing - share * dg.casing};
 }
 
 /// Halves what lies between the last trial that flapped and the coolest that did not.
 bool ThermalEquilibrium::towards_stop() {
-  if (verge_is_unclear_ || stopped_->winding - before_->at.winding < stop_width) {
+  if (verge_is_unclear_ || stopped_->winding - before_->assumed.winding < stop_width) {
     // The verge itself is nothing that a start-up could decide.
     at_stop_ = true;
-    at_ = {std::clamp(before_->leads_to.winding, stopped_->winding, copper_melting_point),
-           std::clamp(before_->leads_to.casing, stopped_->casing, copper_melting_point)};
+    at_ = {std::clamp(before_->resulting.winding, stopped_->winding, copper_melting_point),
+           std::clamp(before_->resulting.casing, stopped_->casing, copper_melting_point)};
   } else {
-    at_ = middle(before_->at, *stopped_);
+    at_ = middle(before_->assumed, *stopped_);
   }
   return false;
 }
@@ -73,7 +73,7 @@ bool ThermalEquilibrium::advance(bool flaps, const Metrics<double>& metrics, boo
   }
   const Trial last{
       at_, {metrics[Metric::winding_temperature] + zero_celsius, metrics[Metric::case_temperature] + zero_celsius}};
-  const auto r = difference(last.leads_to, last.at);
+  const auto r = difference(last.resulting, last.assumed);
   // Simulations of a switching supply scatter by more than any tolerance.
   const double relaxed = std::min(closeness_ * std::pow(10.0, std::max(0, solutions_ - relaxed_after)), 1e-4);
   if (std::sqrt(weighted(r, r)) <= std::max(closeness_, relaxed)) return end(ThermalOutcome::settled);
@@ -84,12 +84,12 @@ bool ThermalEquilibrium::advance(bool flaps, const Metrics<double>& metrics, boo
 
   MotorTemperatures<double> next = secant(last);
   // Where it heats it is hotter that it settles, if at all: a secant says otherwise under runaway.
-  if (heats ? !(next.winding > at_.winding) : !(next.winding < at_.winding)) next = last.leads_to;
+  if (heats ? !(next.winding > at_.winding) : !(next.winding < at_.winding)) next = last.resulting;
   const auto within = [&](double T) { return std::clamp(T, thermal_.ambient_temperature, copper_melting_point); };
   next = {within(next.winding), within(next.casing)};
   before_ = last;
   if (stopped_ && next.winding >= stopped_->winding) return towards_stop();
-  if (solutions_ > patience && heating_ && cooling_) next = middle(heating_->at, cooling_->at);
+  if (solutions_ > patience && heating_ && cooling_) next = middle(heating_->assumed, cooling_->assumed);
   at_ = next;
   return false;
 }

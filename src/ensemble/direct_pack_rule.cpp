@@ -15,10 +15,10 @@ DirectPackRule make_direct_pack_rule() {
   const auto collocation = solver::radau_collocation<int(stages)>();
   DirectPackRule rule{};
   for (std::size_t j = 0; j < stages; ++j) {
-    rule.at[j + 1] = collocation.c[j];
+    rule.phase[j + 1] = collocation.c[j];
     for (std::size_t l = 0; l < stages; ++l) rule.a[j][l] = collocation.a[j][l];
   }
-  for (std::size_t m = 0; m < points; ++m) rule.place[m] = 2.0 * rule.at[m] - 1.0;
+  for (std::size_t m = 0; m < points; ++m) rule.place[m] = 2.0 * rule.phase[m] - 1.0;
   Matrix powers;
   for (int m = 0; m < int(points); ++m) {
     for (int k = 0; k < int(points); ++k) powers(m, k) = std::pow((long double)(rule.place[m]), k);

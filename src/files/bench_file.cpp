@@ -60,12 +60,12 @@ class BenchReader {
     options->known_keys(keys);
     fit.loss = options->choice<Loss>("loss", Loss::none);
     fit.loss_scale = options->quantity("loss_scale", "1").value_or(fit.loss_scale);
-    if (!(fit.loss_scale >= least_loss_scale && fit.loss_scale <= most_loss_scale)) {
+    if (!(fit.loss_scale >= min_loss_scale && fit.loss_scale <= max_loss_scale)) {
       options->refuse(
           options->at("loss_scale"), "loss_scale",
           fmt::format("must lie between {:g} and {:g} standard deviations, got {:g}: elsewhere intervals do "
                       "not hold what they say",
-                      least_loss_scale, most_loss_scale, fit.loss_scale));
+                      min_loss_scale, max_loss_scale, fit.loss_scale));
     }
     fit.starts = options->count("starts", 1).value_or(1);
     if (fit.starts > max_fit_starts) {

@@ -38,16 +38,16 @@ std::uint64_t checksum(std::span<const std::byte> bytes, std::uint64_t seed) {
   // Four sums side by side, so that their multiplications overlap.
   constexpr std::uint64_t factor = 0x9e3779b97f4a7c15;
   std::uint64_t lanes[4] = {seed ^ 1, seed ^ 2, seed ^ 3, seed ^ 4};
-  std::size_t at = 0;
+  std::size_t position = 0;
   const auto take = [&](std::uint64_t& lane, std::uint64_t word) { lane = std::rotl((lane ^ word) * factor, 29); };
-  for (; at + 32 <= bytes.size(); at += 32) {
+  for (; position + 32 <= bytes.size(); position += 32) {
     for (int k = 0; k < 4; ++k) {
       std::uint64_t word;
-      std::memcpy(&word, bytes.data() + at + 8 * k, 8);
+      std::memcpy(&word, bytes.data() + position + 8 * k, 8);
       take(lanes[k], word);
     }
   }
-  for (; at < bytes.size(); ++at) take(lanes[at % 4], std::uint64_t(bytes[at]) + 0x100);
+  for (; position < bytes.size(); ++position) take(lanes[position % 4], std::uint64_t(bytes[position]) + 0x100);
   std::uint64_t sum = bytes.size();
   for (const std::uint64_t lane : lanes) take(sum, lane);
   return sum ^ (sum >> 32);

@@ -52,10 +52,10 @@ MatVariable structure_of(const AllocationMap& map) {
   for (const AllocationColumn& c : allocation_columns) fields.push_back(c.name);
   for (const AllocationSlope& s : allocation_slopes) fields.push_back(s.name);
   std::array<std::size_t, 2> sizes = {1, 1};
-  MatVariable of = made(Mat_VarCreateStruct((std::string("map_") + name_of(map.input)).c_str(), 2, sizes.data(),
-                                            fields.data(), unsigned(fields.size())));
+  MatVariable structure = made(Mat_VarCreateStruct((std::string("map_") + name_of(map.input)).c_str(), 2, sizes.data(),
+                                                   fields.data(), unsigned(fields.size())));
   const auto put = [&](const char* field, MatVariable value) {
-    Mat_VarSetStructFieldByName(of.get(), field, 0, value.release());
+    Mat_VarSetStructFieldByName(structure.get(), field, 0, value.release());
   };
   const auto column = [&](double AllocationPoint::* member) {
     std::vector<double> values;
@@ -69,7 +69,7 @@ MatVariable structure_of(const AllocationMap& map) {
     for (const AllocationColumn& c : allocation_columns) slope.push_back((map.*s.member).*c.member);
     put(s.name, row(nullptr, slope));
   }
-  return of;
+  return structure;
 }
 
 struct CloseMat {
@@ -88,8 +88,8 @@ bool are_equal(const matvar_t* a, const matvar_t* b) {
   if (a->class_type != MAT_C_CELL && a->class_type != MAT_C_STRUCT) {
     return std::memcmp(a->data, b->data, a->nbytes) == 0;
   }
-  const auto parts = [](const matvar_t* of) {
-    return std::span(static_cast<matvar_t* const*>(of->data), of->nbytes / sizeof(matvar_t*));
+  const auto parts = [](const matvar_t* variable) {
+    return std::span(static_cast<matvar_t* const*>(variable->data), variable->nbytes / sizeof(matvar_t*));
   };
   return std::equal(parts(a).begin(), parts(a).end(), parts(b).begin(), are_equal);
 }

@@ -57,14 +57,14 @@ Dimension put_names(NetcdfFile& data, const std::string& name, std::span<const c
 void write_control_netcdf(const ControlModels& models, const std::string& version, const std::filesystem::path& file) {
   const LinearModel& model = *models.linear.model;
   const CycleMap& map = model.map;
-  const RunResult& at = models.linear.operating_point;
+  const RunResult& operating_point = models.linear.operating_point;
   NetcdfFile data(file);
   write_provenance(data, {.title = "control models about steady flapping",
                           .command = "linearise",
                           .version = version,
-                          .vehicle = write_design(at.design),
-                          .condition = name_of(models.options.at.condition),
-                          .domain = name_of(at.domain)});
+                          .vehicle = write_design(operating_point.design),
+                          .condition = name_of(models.options.operating_point.condition),
+                          .domain = name_of(operating_point.domain)});
   put_numbers(data, "period", {}, "s", "time step of the cycle-to-cycle model", {map.period});
   const Dimension state = put_signals(data, "state", map.states), next = put_copy(data, "next_state", map.states);
   const Dimension input = put_signals(data, "input", map.inputs), output = put_signals(data, "output", map.outputs);

@@ -111,8 +111,8 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
   } catch (const ParameterError& error) {
     const bool point = error.key() == "point";
     const bool of_root = error.key().starts_with("fallback");
-    const TomlNode* at = of_root ? tree.find("fallback") : sheet->node().find(point ? "point" : error.key());
-    const TomlNode& place = at ? *at : sheet->node();
+    const TomlNode* named = of_root ? tree.find("fallback") : sheet->node().find(point ? "point" : error.key());
+    const TomlNode& place = named ? *named : sheet->node();
     throw InputError(file_name, place.line, place.column, of_root ? error.key() : sheet->name_of(error.key()),
                      error.reason());
   }

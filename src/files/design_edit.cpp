@@ -156,14 +156,14 @@ class Editor {
     edits_.push_back({begin, end, std::move(text)});
   }
 
-  std::size_t line_begin(std::size_t at) const {
-    const auto newline = at == 0 ? std::string_view::npos : text_.rfind('\n', at - 1);
+  std::size_t line_begin(std::size_t position) const {
+    const auto newline = position == 0 ? std::string_view::npos : text_.rfind('\n', position - 1);
     return newline == std::string_view::npos ? 0 : newline + 1;
   }
 
-  std::size_t line_end(std::size_t at) const {
-    std::size_t end = std::min(text_.find('\n', at), text_.size());
-    if (end > at && text_[end - 1] == '\r') --end;
+  std::size_t line_end(std::size_t position) const {
+    std::size_t end = std::min(text_.find('\n', position), text_.size());
+    if (end > position && text_[end - 1] == '\r') --end;
     return end;
   }
 
@@ -171,9 +171,9 @@ class Editor {
   void remove(const StatedKey& key) {
     const TomlNode& node = *key.node;
     if (!key.in_line) {
-      for (std::size_t at = line_begin(node.key_begin); at <= node.end && at < text_.size();) {
-        replace(at, at, "# ");
-        at = std::min(text_.find('\n', at), text_.size()) + 1;
+      for (std::size_t position = line_begin(node.key_begin); position <= node.end && position < text_.size();) {
+        replace(position, position, "# ");
+        position = std::min(text_.find('\n', position), text_.size()) + 1;
       }
       return;
     }
@@ -202,11 +202,11 @@ class Editor {
     if (sibling && sibling->in_line) {
       replace(sibling->node->end, sibling->node->end, ", " + line);
     } else if (sibling) {
-      const std::size_t key_begin = sibling->node->key_begin, at = line_end(sibling->node->end);
-      replace(at, at, fmt::format("{}{}{}", newline_, of(line_begin(key_begin), key_begin), line));
+      const std::size_t key_begin = sibling->node->key_begin, to = line_end(sibling->node->end);
+      replace(to, to, fmt::format("{}{}{}", newline_, of(line_begin(key_begin), key_begin), line));
     } else if (const TomlNode* section = tree_.find_path(parent); section && is_header_of(section->begin, parent)) {
-      const std::size_t at = line_end(section->begin);
-      replace(at, at, newline_ + line);
+      const std::size_t to = line_end(section->begin);
+      replace(to, to, newline_ + line);
     } else {
       new_sections_[std::string(parent)] += line + newline_;
     }
@@ -223,14 +223,14 @@ class Editor {
   std::string applied() {
     std::stable_sort(edits_.begin(), edits_.end(), [](const Edit& a, const Edit& b) { return a.begin < b.begin; });
     std::string result;
-    std::size_t at = 0;
+    std::size_t position = 0;
     for (const Edit& edit : edits_) {
-      if (edit.begin < at) continue;  // within a part that went; what comes of it is checked afterwards
-      result += of(at, edit.begin);
+      if (edit.begin < position) continue;  // within a part that went; what comes of it is checked afterwards
+      result += of(position, edit.begin);
       result += edit.text;
-      at = edit.end;
+      position = edit.end;
     }
-    result += text_.substr(at);
+    result += text_.substr(position);
     for (const auto& [name, lines] : new_sections_) {
       if (!result.empty() && result.back() != '\n') result += newline_;
       result += fmt::format("{}[{}]{}{}", newline_, name, newline_, lines);

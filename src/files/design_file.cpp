@@ -48,7 +48,7 @@ class Reader {
   Reader(const Document& document, const TableLoader& load_table)
       : document_(document), load_table_(load_table), errors_(document.errors) {}
 
-  /// Reads on after an error, so that all of them are told.
+  /// Reads on after an error, so that all of them are reported.
   Design<double> read() {
     Design<double> d{};
     require_sections();
@@ -94,17 +94,17 @@ class Reader {
   }
 
  private:
-  /// Thrown instead of an error that follows from one that is told already.
-  struct Told {};
+  /// Thrown instead of an error that follows from one that is reported already.
+  struct Reported {};
 
   template <class Do>
   void attempt(const Do& act) {
     try {
       errors_.attempt(act);
-    } catch (const Told&) {}
+    } catch (const Reported&) {}
   }
 
-  /// True if a misspelt or misplaced key, which is told already, was to be this one.
+  /// True if a misspelt or misplaced key, which is reported already, was to be this one.
   bool known_to_be_wrong(std::string_view path) const {
     const auto leaf = [](std::string_view p) { return p.substr(p.rfind('.') + 1); };
     const auto section = [](std::string_view p) { return p.substr(0, p.size() - p.substr(p.rfind('.') + 1).size()); };
@@ -132,19 +132,19 @@ class Reader {
     }
   }
 
-  /// Told after the errors that stand in the file.
+  /// Reported after the errors that stand in the file.
   [[noreturn]] void missing(std::string_view path, std::string_view expected) const {
     const bool follows = std::any_of(absent_.begin(), absent_.end(), [&](std::string_view section) {
       return path.starts_with(section) && path.size() > section.size() && path[section.size()] == '.';
     });
-    if (follows || known_to_be_wrong(path)) throw Told{};
+    if (follows || known_to_be_wrong(path)) throw Reported{};
     const auto dot = path.rfind('.');
     const std::string section(path.substr(0, dot));
     missing_.attempt([&] {
       document_.locate(section).refuse(std::string(path),
                                        fmt::format("missing in [{}]; expected {}", section, expected));
     });
-    throw Told{};
+    throw Reported{};
   }
 
   [[noreturn]] void wrong(const Value& value, std::string_view path, std::string_view expected) const {

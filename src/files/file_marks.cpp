@@ -103,12 +103,13 @@ void mark_svg(std::string& text) {
 /// In cairo's place among the document's information, whose length is kept because the file counts its bytes.
 void mark_pdf(std::string& text) {
   const std::string key = "/Producer (cairo ", end = "(https://cairographics.org))";
-  const auto at = text.rfind(key), closing = text.find(end, at == std::string::npos ? text.size() : at);
-  if (closing == std::string::npos || closing - at > 60) {
+  const auto position = text.rfind(key),
+             closing = text.find(end, position == std::string::npos ? text.size() : position);
+  if (closing == std::string::npos || closing - position > 60) {
     text += fmt::format("% {}\n", drawn);
     return;
   }
-  const std::size_t from = at + std::strlen("/Producer ("), length = closing + end.size() - 1 - from;
+  const std::size_t from = position + std::strlen("/Producer ("), length = closing + end.size() - 1 - from;
   const std::string cairo = text.substr(from, closing - from - 1);
   std::string producer = fmt::format("{}, {}", drawn, cairo);
   producer.resize(length, ' ');
@@ -141,10 +142,10 @@ bool written_by_wingbeat(const fs::path& file) {
     return head.find(std::string("Software\0", 9) + std::string(drawn)) != std::string::npos;
   }
   if (head.starts_with("%PDF")) {
-    constexpr std::streamoff most = 16384;
+    constexpr std::streamoff max_bytes = 16384;
     in.clear();
     in.seekg(0, std::ios::end);
-    in.seekg(std::max<std::streamoff>(0, std::streamoff(in.tellg()) - most));
+    in.seekg(std::max<std::streamoff>(0, std::streamoff(in.tellg()) - max_bytes));
     const std::string tail{std::istreambuf_iterator<char>(in), {}};
     return tail.find(drawn) != std::string::npos;
   }

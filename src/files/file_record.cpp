@@ -102,7 +102,8 @@ void FileRecord::add_temporary(const fs::path& temporary, const std::string& sho
 std::string FileRecord::with_given_names(std::string message) const {
   const std::lock_guard lock(mutex_);
   for (const auto& [name, shown] : temporaries_) {
-    if (const auto at = message.find(name); at != std::string::npos) message.replace(at, name.size(), shown);
+    if (const auto position = message.find(name); position != std::string::npos)
+      message.replace(position, name.size(), shown);
   }
   return message;
 }
@@ -116,19 +117,19 @@ void FileRecord::clear() {
 
 fs::path followed(const std::string& option, const fs::path& path) {
   std::error_code error;
-  fs::path at = fs::absolute(path, error);
+  fs::path target = fs::absolute(path, error);
   constexpr int max_links = 40;
-  for (int links = 0; fs::is_symlink(fs::symlink_status(at, error)); ++links) {
+  for (int links = 0; fs::is_symlink(fs::symlink_status(target, error)); ++links) {
     if (links == max_links) refuse(option, path, "cannot be written: its symbolic links lead round in a circle");
-    const fs::path next = fs::read_symlink(at, error);
+    const fs::path next = fs::read_symlink(target, error);
     if (error) refuse(option, path, "cannot be written: " + error.message());
-    at = next.is_absolute() ? next : at.parent_path() / next;
+    target = next.is_absolute() ? next : target.parent_path() / next;
   }
-  const fs::path folder = at.parent_path();
+  const fs::path folder = target.parent_path();
   const fs::path real = fs::weakly_canonical(folder, error);
   if (error) refuse(option, path, "cannot be written: " + error.message());
   if (!fs::is_directory(real, error)) refuse(option, path, fmt::format("there is no folder {}", real.string()));
-  return real / at.filename();
+  return real / target.filename();
 }
 
 void check_not_read(const std::string& option, const fs::path& path, const fs::path& target) {

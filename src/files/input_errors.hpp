@@ -42,9 +42,9 @@ class InputErrors {
     if (sorted.empty()) return;
     InputError first = sorted.front();
     first.forget_others();
-    std::set<std::string> told = {first.what()};
+    std::set<std::string> reported = {first.what()};
     for (const InputError& error : sorted) {
-      if (told.insert(error.what()).second) first.add_other(error);
+      if (reported.insert(error.what()).second) first.add_other(error);
     }
     throw first;
   }

@@ -55,10 +55,10 @@ std::optional<ProcessState> state_of(const std::string& process) {
   const auto bracket = all.rfind(')');
   if (bracket == std::string::npos || bracket + 2 >= all.size()) return std::nullopt;
   ProcessState found{all[bracket + 2], {}};
-  std::size_t at = bracket + 2;
-  for (int field = 3; field < 22 && at != std::string::npos; ++field) at = all.find(' ', at + 1);
-  if (at == std::string::npos) return std::nullopt;
-  found.start = all.substr(at + 1, all.find(' ', at + 1) - at - 1);
+  std::size_t position = bracket + 2;
+  for (int field = 3; field < 22 && position != std::string::npos; ++field) position = all.find(' ', position + 1);
+  if (position == std::string::npos) return std::nullopt;
+  found.start = all.substr(position + 1, all.find(' ', position + 1) - position - 1);
   return found;
 }
 

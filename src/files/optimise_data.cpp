@@ -27,14 +27,14 @@ std::string meaning_of(const DesignParameter& p) { return std::string(find_param
 void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResult& r) {
   const MetricInfo& objective = metric_info(study.objective);
   const std::size_t parameters = study.parameters.size();
-  const auto each_parameter = [&](const std::string& prefix, const std::string& of,
+  const auto each_parameter = [&](const std::string& prefix, const std::string& role,
                                   const std::vector<NetcdfFile::Dimension>& along, std::size_t count,
                                   const auto& value) {
     for (std::size_t k = 0; k < parameters; ++k) {
       const DesignParameter& p = study.parameters[k].parameter;
       std::vector<double> values;
       for (std::size_t n = 0; n < count; ++n) values.push_back(value(n, k));
-      const auto variable = data.define_variable(prefix + variable_name(p.key), along, p.unit, meaning_of(p) + of);
+      const auto variable = data.define_variable(prefix + variable_name(p.key), along, p.unit, meaning_of(p) + role);
       data.set_key(variable, p.key);
       data.write(variable, values);
     }
@@ -52,14 +52,14 @@ void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResu
 
   if (!r.searches.empty()) {
     const auto search = data.define_dimension("search", r.searches.size());
-    const auto at = [&](std::size_t n, std::size_t k, const std::vector<double> SearchEnd::* where) {
+    const auto parameter_at = [&](std::size_t n, std::size_t k, const std::vector<double> SearchEnd::* where) {
       const std::vector<double>& x = r.searches[n].*where;
       return x.empty() ? absent : x[k];
     };
     each_parameter("search_start_", ", where the search began", {search}, r.searches.size(),
-                   [&](std::size_t n, std::size_t k) { return at(n, k, &SearchEnd::start); });
+                   [&](std::size_t n, std::size_t k) { return parameter_at(n, k, &SearchEnd::start); });
     each_parameter("search_end_", ", where the search ended", {search}, r.searches.size(),
-                   [&](std::size_t n, std::size_t k) { return at(n, k, &SearchEnd::end); });
+                   [&](std::size_t n, std::size_t k) { return parameter_at(n, k, &SearchEnd::end); });
     const auto column = [&](const char* name, const std::string& unit, const std::string& meaning, auto value) {
       std::vector<double> values;
       for (const SearchEnd& s : r.searches) values.push_back(value(s));
@@ -97,32 +97,34 @@ void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResu
     for (const FlatDirection& d : r.directions) longest = std::max(longest, d.walk.size());
     const auto direction = data.define_dimension("direction", r.directions.size());
     const auto step = data.define_dimension("step", longest);
-    const auto at = [&](std::size_t n) -> const FlatDirection::Step* {
+    const auto step_of = [&](std::size_t n) -> const FlatDirection::Step* {
       const FlatDirection& d = r.directions[n / longest];
       return n % longest < d.walk.size() ? &d.walk[n % longest] : nullptr;
     };
     const std::size_t count = longest * r.directions.size();
     each_parameter("walk_", ", on the walk along a free direction", {direction, step}, count,
-                   [&](std::size_t n, std::size_t k) { return at(n) ? at(n)->parameters[k] : absent; });
+                   [&](std::size_t n, std::size_t k) { return step_of(n) ? step_of(n)->parameters[k] : absent; });
     const auto walked = [&](const char* name, const std::string& unit, const std::string& meaning, auto value) {
       std::vector<double> values;
-      for (std::size_t n = 0; n < count; ++n) values.push_back(at(n) ? value(*at(n)) : absent);
+      for (std::size_t n = 0; n < count; ++n) values.push_back(step_of(n) ? value(*step_of(n)) : absent);
       data.write(data.define_variable(name, {direction, step}, unit, meaning), values);
     };
     walked("walk_distance", "1", "distance from the optimum in ranges of the bounds",
            [](const FlatDirection::Step& s) { return s.distance; });
     walked("walk_objective", objective.unit, objective.long_name + std::string(", on the walk"),
            [](const FlatDirection::Step& s) { return s.objective; });
-    const auto of = [&](const char* name, const char* meaning, auto value) {
+    const auto write_column = [&](const char* name, const char* meaning, auto value) {
       std::vector<double> values;
       for (const FlatDirection& d : r.directions) values.push_back(value(d));
       data.write(data.define_variable(name, {direction}, "1", meaning), values);
     };
-    of("direction_width", "largest share of a parameter's bounds within which the objective is 0.1 % worse at most",
-       [](const FlatDirection& d) { return d.width; });
-    of("direction_flat", "1 for a null direction", [](const FlatDirection& d) { return d.flat ? 1.0 : 0.0; });
-    of("direction_curvature", "of the Lagrangian, relative to the objective, per square of the range of the bounds",
-       [](const FlatDirection& d) { return d.curvature; });
+    write_column("direction_width",
+                 "largest share of a parameter's bounds within which the objective is 0.1 % worse at most",
+                 [](const FlatDirection& d) { return d.width; });
+    write_column("direction_flat", "1 for a null direction", [](const FlatDirection& d) { return d.flat ? 1.0 : 0.0; });
+    write_column("direction_curvature",
+                 "of the Lagrangian, relative to the objective, per square of the range of the bounds",
+                 [](const FlatDirection& d) { return d.curvature; });
   }
 }
 

@@ -216,16 +216,16 @@ class OptimiseReader : public detail::StudySections {
   }
 
   void check_size(const OptimiseFile& file) const {
-    const std::size_t most = 1000;
+    const std::size_t max_combinations = 1000;
     std::size_t combinations = 1;
     for (const DiscreteParameter& p : file.choices) combinations *= p.values.size();
     combinations *= std::max<std::size_t>(1, file.motors.size());
     const TomlNode& list = *root_.find("parameter");
-    if (!several_ && combinations > most) {
+    if (!several_ && combinations > max_combinations) {
       refuse(list, "parameter.values",
              fmt::format("{} combinations are more than {}: one objective tries each of them; "
                          "take fewer values, or bounds instead",
-                         combinations, most));
+                         combinations, max_combinations));
     }
     if (file.study.parameters.size() + file.choices.size() + 1 > ScrambledSobol::max_dimensions) {
       refuse(list, "parameter", fmt::format("more than {} parameters", ScrambledSobol::max_dimensions - 1));

@@ -71,7 +71,7 @@ const MotorTrial* best_trial(const OptimiseFile& file, std::span<const MotorTria
   const MotorTrial* best = nullptr;
   for (const MotorTrial& t : trials) {
     if (t.refused() || t.result.outcome != OptimiseResult::Outcome::found) continue;
-    const auto value = [&](const MotorTrial& of) { return sign * of.result.point.metrics[file.study.objective]; };
+    const auto value = [&](const MotorTrial& trial) { return sign * trial.result.point.metrics[file.study.objective]; };
     if (!best || value(t) < value(*best)) best = &t;
   }
   return best;

@@ -186,7 +186,7 @@ class Reader : TomlReader {
         }
         if (!along) {
           also({"at"});
-          trend.at = quantity_at(t, "at", unit.c_str());
+          trend.over_value = quantity_at(t, "at", unit.c_str());
         }
       }
       if (has(t, "hold_stroke")) trend.hold_stroke = flag_at(t, "hold_stroke");
@@ -327,8 +327,9 @@ class Reader : TomlReader {
     if (node.kind != Kind::number || !std::isfinite(node.number)) {
       refuse(node, key, "expected a number or a quantity");
     }
-    const std::string_view of = unit;
-    return {node.number, of == "1" ? fmt::format("{:g}", node.number) : fmt::format("{:g} {}", node.number, of)};
+    const std::string_view shown_unit = unit;
+    return {node.number,
+            shown_unit == "1" ? fmt::format("{:g}", node.number) : fmt::format("{:g} {}", node.number, shown_unit)};
   }
   std::pair<double, std::string> published_at(const TomlNode& t, const std::string& key, const char* unit) const {
     const TomlNode& node = need(t, key, "a number or a quantity");

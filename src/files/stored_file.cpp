@@ -32,13 +32,13 @@ bool ends_with_element(std::string_view content, std::string_view element) {
 bool is_whole_mat(std::string_view content) {
   constexpr std::size_t header = 128, tag = 8;
   if (content.size() < header) return false;
-  std::size_t at = header;
-  while (at + tag <= content.size()) {
+  std::size_t position = header;
+  while (position + tag <= content.size()) {
     std::uint32_t length = 0;
-    std::memcpy(&length, content.data() + at + 4, sizeof length);
-    at += tag + length;
+    std::memcpy(&length, content.data() + position + 4, sizeof length);
+    position += tag + length;
   }
-  return at == content.size();
+  return position == content.size();
 }
 
 bool is_whole_netcdf(const fs::path& file) {

@@ -127,7 +127,7 @@ const TomlNode& StudySections::need(const TomlNode& table, const std::string& se
                                     std::string_view expected) const {
   const TomlNode* node = table.find(key);
   if (!node) {
-    if (spoiled_.contains({&table, std::string(key)})) finish();  // misspelt, which is told already
+    if (spoiled_.contains({&table, std::string(key)})) finish();  // misspelt, which is reported already
     const SourceLocation p = table.line > 0 ? place_of(table) : SourceLocation{1, 1};
     refuse(p, within(section, key), fmt::format("missing; expected {}", expected));
   }

@@ -44,7 +44,7 @@ class StudySections : public TomlReader {
   StudySections(std::string name, std::string_view text, std::span<const std::string> overrides,
                 std::initializer_list<std::string_view> sections, std::initializer_list<std::string_view> keys = {});
 
-  /// Keeps an InputError for finish(), so that all of them are told; false if there was one.
+  /// Keeps an InputError for finish(), so that all of them are reported; false if there was one.
   template <class Do>
   bool attempt(const Do& act) const {
     return errors_.attempt(act);

@@ -126,27 +126,27 @@ class SweepChecks {
   }
 
   void check_supply() const {
-    const auto at = [&](const char* key) {
+    const auto source_of = [&](const char* key) {
       const auto found = places_.keys.find(key);
       return found == places_.keys.end() ? places_.study : found->second;
     };
     const bool frequency = sweep_.frequency || has_frequency_axis();
     for (const SweepVariant& v : sweep_.variants) {
-      if (swings_a_crank(v.design)) reader_.refuse(at("supply.type"), "supply.type", no_swinging_crank);
+      if (swings_a_crank(v.design)) reader_.refuse(source_of("supply.type"), "supply.type", no_swinging_crank);
       if (frequency && v.design.supply.type == SupplyType::battery) {
-        reader_.refuse(at("supply.type"), "supply.type", no_held_frequency);
+        reader_.refuse(source_of("supply.type"), "supply.type", no_held_frequency);
       }
       if (frequency && v.design.supply.type == SupplyType::pwm && !(v.design.supply.duty > 0.0)) {
-        reader_.refuse(at("supply.duty"), "supply.duty", "is 0: no voltage sets the flapping frequency");
+        reader_.refuse(source_of("supply.duty"), "supply.duty", "is 0: no voltage sets the flapping frequency");
       }
     }
     for (const char* key : {"supply.frequency", "supply.resonance_ratio"}) {
       if (frequency && places_.keys.contains(key))
-        reader_.refuse(at(key), key, "has no effect where the frequency is held");
+        reader_.refuse(source_of(key), key, "has no effect where the frequency is held");
     }
     for (const char* key : {"supply.voltage", "supply.duty"}) {
       if (frequency && places_.keys.contains(key)) {
-        reader_.refuse(at(key), key, "has no effect where the frequency is held: the voltage is found for it");
+        reader_.refuse(source_of(key), key, "has no effect where the frequency is held: the voltage is found for it");
       }
     }
     if (sweep_.frequency && places_.set_voltage) {

@@ -228,8 +228,8 @@ class ToleranceReader : public detail::StudySections {
     ToleranceStudy& study = *study_result_;
     const std::string file = path.string();
     const TomlNode tree = parse_toml_tree(read_text_file(path), file);
-    const auto refuse_there = [&](const TomlNode& at, const std::string& key, const std::string& message) {
-      throw InputError(file, at.line, at.column, key, message);
+    const auto refuse_there = [&](const TomlNode& refused, const std::string& key, const std::string& message) {
+      throw InputError(file, refused.line, refused.column, key, message);
     };
     const TomlNode* list = tree.find("parameter");
     if (!list || list->kind != Kind::array || list->items.empty()) {
@@ -254,8 +254,8 @@ class ToleranceReader : public detail::StudySections {
     }
     const TomlNode* section = tree.find("covariance");
     const TomlNode* matrix = section ? section->find("matrix") : nullptr;
-    const auto shape = [&](const TomlNode& at) {
-      refuse_there(at, "covariance.matrix", fmt::format("expected {0} rows of {0} numbers", count));
+    const auto shape = [&](const TomlNode& misshapen) {
+      refuse_there(misshapen, "covariance.matrix", fmt::format("expected {0} rows of {0} numbers", count));
     };
     if (!matrix || matrix->kind != Kind::array || matrix->items.size() != count) shape(matrix ? *matrix : tree);
     for (const TomlNode& row : matrix->items) {

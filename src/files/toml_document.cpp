@@ -22,7 +22,7 @@ namespace wingbeat {
 namespace {
 
 // Which key was meant takes a comparison with every one there is.
-constexpr int most_suggestions = 100;
+constexpr int max_suggestions = 100;
 
 int line_of(const toml::source_position& p) { return int(p.line); }
 int column_of(const toml::source_position& p) { return int(p.column); }
@@ -56,17 +56,17 @@ std::string reason_in(const toml::parse_error& error) {
 class TomlOffsets {
  public:
   explicit TomlOffsets(std::string_view text) : text_(text), lines_{text.starts_with("\xEF\xBB\xBF") ? 3u : 0u} {
-    for (auto at = text.find('\n'); at != std::string_view::npos; at = text.find('\n', at + 1))
-      lines_.push_back(at + 1);
+    for (auto position = text.find('\n'); position != std::string_view::npos; position = text.find('\n', position + 1))
+      lines_.push_back(position + 1);
   }
 
   std::size_t of(const toml::source_position& p) const {
-    std::size_t at = lines_[std::clamp<std::size_t>(p.line, 1, lines_.size()) - 1];
-    for (auto n = p.column; n > 1 && at < text_.size(); --n) {
-      do ++at;
-      while (at < text_.size() && (static_cast<unsigned char>(text_[at]) & 0xC0) == 0x80);
+    std::size_t position = lines_[std::clamp<std::size_t>(p.line, 1, lines_.size()) - 1];
+    for (auto n = p.column; n > 1 && position < text_.size(); --n) {
+      do ++position;
+      while (position < text_.size() && (static_cast<unsigned char>(text_[position]) & 0xC0) == 0x80);
     }
-    return at;
+    return position;
   }
 
  private:
@@ -168,7 +168,7 @@ class Flattener {
 
   void enter(const TomlNode& node, const std::string& path, const Origin& origin) {
     const bool known = find_parameter<double>(path) != nullptr, section = is_section(path);
-    if (!known && !section && ++unknown_ > most_suggestions) {
+    if (!known && !section && ++unknown_ > max_suggestions) {
       document_.spoiled.push_back(path);
       offend(path, origin, "unknown key");
     } else if (!known && !section) {

@@ -50,10 +50,10 @@ bool TomlReader::boolean(const TomlNode& node, const std::string& key) const {
 }
 
 std::uint64_t TomlReader::whole_number(const TomlNode& node, const std::string& key, std::uint64_t least,
-                                       std::uint64_t most) const {
+                                       std::uint64_t max_value) const {
   const bool whole = node.kind == Kind::number && node.whole;
-  if (!whole || !(node.number >= double(least) && node.number <= double(most))) {
-    wrong(node, key, fmt::format("a whole number from {} to {}", least, most));
+  if (!whole || !(node.number >= double(least) && node.number <= double(max_value))) {
+    wrong(node, key, fmt::format("a whole number from {} to {}", least, max_value));
   }
   return std::uint64_t(node.number);
 }

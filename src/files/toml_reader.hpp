@@ -42,7 +42,7 @@ class TomlReader {
                   SpeedConstant speed_constant = SpeedConstant::refused) const;
   bool boolean(const TomlNode& node, const std::string& key) const;
   std::uint64_t whole_number(const TomlNode& node, const std::string& key, std::uint64_t least,
-                             std::uint64_t most) const;
+                             std::uint64_t max_value) const;
   std::string one_of(const TomlNode& node, const std::string& key, std::span<const std::string_view> known) const;
   std::string one_of(const TomlNode& node, const std::string& key,
                      std::initializer_list<std::string_view> known) const {

@@ -11,8 +11,8 @@ namespace wingbeat {
 
 std::string toml_text(std::string_view text) {
   std::string result = "\"";
-  for (std::size_t at = 0; at < text.size();) {
-    const detail::Utf8Character c = detail::utf8_at(text, at);
+  for (std::size_t position = 0; position < text.size();) {
+    const detail::Utf8Character c = detail::utf8_at(text, position);
     if (!c.valid) {
       result += "\\uFFFD";
     } else if (c.code == '"' || c.code == '\\') {
@@ -21,9 +21,9 @@ std::string toml_text(std::string_view text) {
     } else if (detail::is_hidden(c.code)) {
       result += fmt::format("\\u{:04X}", c.code);
     } else {
-      result += text.substr(at, c.length);
+      result += text.substr(position, c.length);
     }
-    at += c.length;
+    position += c.length;
   }
   return result + '"';
 }

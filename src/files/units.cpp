@@ -72,8 +72,9 @@ std::string typewritten(std::string_view text) {
       {"\u00a0", " "}, {"\u2009", " "}, {"\u202f", " "}, {"\u2074", "^4"}, {"\u2075", "^5"}, {"\u03bc", "\u00b5"}};
   std::string result(text);
   for (const auto& [from, to] : replacements) {
-    for (auto at = result.find(from); at != std::string::npos; at = result.find(from, at + to.size())) {
-      result.replace(at, from.size(), to);
+    for (auto position = result.find(from); position != std::string::npos;
+         position = result.find(from, position + to.size())) {
+      result.replace(position, from.size(), to);
     }
   }
   return std::string(detail::trimmed(result));

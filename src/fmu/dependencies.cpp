@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "fmu/instant.hpp"
+#include "fmu/dynamics.hpp"
 
 namespace wingbeat::fmu {
 namespace {
@@ -27,46 +27,46 @@ std::vector<std::size_t> known_on_side(const Design<double>& design, VariableKin
                                        std::size_t side) {
   Knowns k{StateLayout(resolve(design)), side, {}};
   const StateLayout& layout = k.layout;
-  const Places& at = layout.at;
+  const StateIndices& indices = layout.indices;
   const bool sine = layout.has_phase;
   const bool resists = design.supply.type == SupplyType::battery;
   const auto all_states = [&] {
-    for (std::size_t n = 0; n < at.count; ++n) k.state(n);
+    for (std::size_t n = 0; n < indices.count; ++n) k.state(n);
   };
   // Everything that forces and accelerations depend on.
   const auto mechanics = [&] {
     all_states();
-    if (!at.inductive) k.voltages(sine);
+    if (!indices.inductive) k.voltages(sine);
     k.input(InputId::load_torque);
   };
   const auto current = [&] {
-    if (at.inductive) return k.state(at.current);
+    if (indices.inductive) return k.state(indices.current);
     k.state(1);
     k.voltages(sine);
   };
   const auto velocity = [&] {  // of the stroke
-    if (at.crank) k.state(0);
+    if (indices.crank) k.state(0);
     k.state(1);
   };
   // What the air does without the accelerations.
   const auto aerodynamics = [&] {
     velocity();
-    if (at.pitching) k.state(at.pitch), k.state(at.pitch + 1);
+    if (indices.pitching) k.state(indices.pitch), k.state(indices.pitch + 1);
   };
   const auto lift = [&] {
-    if (at.pitching) mechanics();  // the air's inertia
+    if (indices.pitching) mechanics();  // the air's inertia
     else velocity();
   };
   const auto electrical_power = [&] {
-    if (!at.inductive) k.state(1);
-    if (at.inductive) k.state(at.current);
+    if (!indices.inductive) k.state(1);
+    if (indices.inductive) k.state(indices.current);
     k.voltages(sine);
   };
   if (kind == VariableKind::derivative) {
     const std::size_t sum = number - layout.first_sum();
-    if (number == 0 || (at.pitching && number == at.pitch)) k.state(number == 0 ? 1 : at.pitch + 1);
-    else if (at.inductive && number == at.current) k.state(1), k.state(at.current), k.voltages(sine);
-    else if (number < at.count) mechanics();
+    if (number == 0 || (indices.pitching && number == indices.pitch)) k.state(number == 0 ? 1 : indices.pitch + 1);
+    else if (indices.inductive && number == indices.current) k.state(1), k.state(indices.current), k.voltages(sine);
+    else if (number < indices.count) mechanics();
     else if (number < layout.first_sum()) k.input(InputId::frequency);
     else if (sum == 0) lift();
     else if (sum <= 2) current();
@@ -82,13 +82,13 @@ std::vector<std::size_t> known_on_side(const Design<double>& design, VariableKin
       case OutputId::power_motor_friction: k.state(1); break;
       case OutputId::stroke_angle: k.state(0); break;
       case OutputId::flapping_velocity: velocity(); break;
-      case OutputId::pitch_angle: k.state(at.pitch); break;
-      case OutputId::pitch_velocity: k.state(at.pitch + 1); break;
+      case OutputId::pitch_angle: k.state(indices.pitch); break;
+      case OutputId::pitch_velocity: k.state(indices.pitch + 1); break;
       case OutputId::current:
       case OutputId::power_copper: current(); break;
       case OutputId::terminal_voltage:
         if (resists) current();
-        if (!resists || at.inductive) k.voltages(sine);
+        if (!resists || indices.inductive) k.voltages(sine);
         break;
       case OutputId::lift: lift(); break;
       case OutputId::drag_moment:

@@ -39,7 +39,7 @@ BaseUnit base_of(const std::string& unit) {
       {"N", {{1, 1, -2, 0, 0, 0}}},  {"J", {{1, 2, -2, 0, 0, 0}}},    {"W", {{1, 2, -3, 0, 0, 0}}},
       {"V", {{1, 2, -3, -1, 0, 0}}}, {"ohm", {{1, 2, -3, -2, 0, 0}}}, {"H", {{1, 2, -2, -2, 0, 0}}},
       {"Hz", {{0, 0, -1, 0, 0, 0}}}, {"C", {{0, 0, 1, 1, 0, 0}}},     {"1", {}}};
-  BaseUnit of;
+  BaseUnit base;
   int sign = 1;
   std::string part;
   const auto add = [&] {
@@ -50,7 +50,7 @@ BaseUnit base_of(const std::string& unit) {
     const int power = one || digits == std::string::npos ? 1 : std::atoi(part.c_str() + digits);
     const auto found = known.find(name);
     if (found != known.end()) {
-      for (std::size_t k = 0; k < 6; ++k) of.exponents[k] += sign * power * found->second.exponents[k];
+      for (std::size_t k = 0; k < 6; ++k) base.exponents[k] += sign * power * found->second.exponents[k];
     }
     part.clear();
   };
@@ -63,7 +63,7 @@ BaseUnit base_of(const std::string& unit) {
     if (c == '/') sign = -1;
   }
   add();
-  return of;
+  return base;
 }
 
 class Writer {
@@ -218,7 +218,7 @@ class Writer {
 
   /// Nominal value, and whether events may set it anew: the motion at stops and standstill, not the sums.
   std::string of_state(const Variable& v) const {
-    const bool moves = v.number < layout_.at.count;
+    const bool moves = v.number < layout_.indices.count;
     const std::size_t before = v.side == 2 ? layout_.count() : 0;
     return attribute("nominal", number(instance_.nominals()[before + v.number])) +
            (moves && has_model_exchange() ? attribute("reinit", "true") : std::string());

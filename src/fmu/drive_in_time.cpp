@@ -94,11 +94,12 @@ DriveInTime::DriveInTime(const Design<double>& design, bool one_of_two, const Se
 void DriveInTime::build(const Design<double>& design, const Settings& settings) {
   const Vehicle<double> vehicle = drive_vehicle(design, one_of_two_);
   const StateLayout layout(vehicle);
-  if (layout.at.inductive != layout_.at.inductive) {
-    throw ParameterError("motor.armature_inductance", layout_.at.inductive ? "must stay > 0 H: the current is a state"
-                                                                           : "must stay 0 H: the current is no state");
+  if (layout.indices.inductive != layout_.indices.inductive) {
+    throw ParameterError("motor.armature_inductance", layout_.indices.inductive
+                                                          ? "must stay > 0 H: the current is a state"
+                                                          : "must stay 0 H: the current is no state");
   }
-  if (layout.at.crank != layout_.at.crank || layout.at.pitching != layout_.at.pitching ||
+  if (layout.indices.crank != layout_.indices.crank || layout.indices.pitching != layout_.indices.pitching ||
       watched_events(vehicle) != watched_) {
     throw ParameterError("vehicle", "must keep the states and events that it was exported with");
   }
@@ -152,8 +153,8 @@ void DriveInTime::initialise(const Design<double>& design, const Settings& setti
 }
 
 std::optional<double> DriveInTime::input(std::size_t index) const {
-  const double* const of = member_of(inputs_, index);
-  return of ? std::optional(*of) : std::nullopt;
+  const double* const input = member_of(inputs_, index);
+  return input ? std::optional(*input) : std::nullopt;
 }
 
 bool DriveInTime::set_input(std::size_t index, double value) {
@@ -213,10 +214,10 @@ std::vector<double> DriveInTime::states() const {
         using M = std::remove_cvref_t<decltype(model)>;
         double y[max_unknowns + detail::quadrature_count] = {};
         model.unknowns(y);
-        std::vector<double> states(y, y + layout_.at.count);
+        std::vector<double> states(y, y + layout_.indices.count);
         if constexpr (!is_crank<M>) states.push_back(model.phase_at(model.now.t));
         for (const ExposedSum& sum : exposed_sums) {
-          states.push_back(y[layout_.at.count + detail::quadrature_of(sum.integral)]);
+          states.push_back(y[layout_.indices.count + detail::quadrature_of(sum.integral)]);
         }
         return states;
       },
@@ -229,9 +230,9 @@ void DriveInTime::set_states(const double* given) {
         using M = std::remove_cvref_t<decltype(model)>;
         double y[max_unknowns + detail::quadrature_count] = {};
         model.unknowns(y);
-        std::copy_n(given, layout_.at.count, y);
+        std::copy_n(given, layout_.indices.count, y);
         for (std::size_t k = 0; k < exposed_sum_count; ++k) {
-          y[layout_.at.count + detail::quadrature_of(exposed_sums[k].integral)] = given[layout_.first_sum() + k];
+          y[layout_.indices.count + detail::quadrature_of(exposed_sums[k].integral)] = given[layout_.first_sum() + k];
         }
         if constexpr (!is_crank<M>) {
           model.means.phase = given[layout_.phase()];
@@ -243,7 +244,7 @@ void DriveInTime::set_states(const double* given) {
 }
 
 template <Scalar S>
-Everything<S> DriveInTime::now(const std::vector<Direction>& knowns) const {
+Dynamics<S> DriveInTime::now(const std::vector<Direction>& knowns) const {
   return std::visit(
       [&](const auto& model) {
         using M = std::remove_cvref_t<decltype(model)>;
@@ -251,7 +252,7 @@ Everything<S> DriveInTime::now(const std::vector<Direction>& knowns) const {
         double numbers[max_unknowns + detail::quadrature_count] = {};
         model.unknowns(numbers);
         std::array<S, max_unknowns> y;
-        for (std::size_t k = 0; k < max_unknowns; ++k) y[k] = S(k < layout_.at.count ? numbers[k] : 0.0);
+        for (std::size_t k = 0; k < max_unknowns; ++k) y[k] = S(k < layout_.indices.count ? numbers[k] : 0.0);
         S v_s(model.voltage(model.now.t));
         if constexpr (ScalarTraits<S>::differentiates) {
           double by_voltage = 1.0, by_phase = 0.0;
@@ -264,7 +265,7 @@ Everything<S> DriveInTime::now(const std::vector<Direction>& knowns) const {
           }
           for (const Direction& known : knowns) {
             if (known.kind == VariableKind::state) {
-              if (known.index < layout_.at.count) y[known.index].v[0] += known.change;
+              if (known.index < layout_.indices.count) y[known.index].v[0] += known.change;
               else if (layout_.has_phase && known.index == layout_.phase()) v_s.v[0] += known.change * by_phase;
               continue;
             }
@@ -281,20 +282,20 @@ Everything<S> DriveInTime::now(const std::vector<Direction>& knowns) const {
       },
       model_);
 }
-template Everything<double> DriveInTime::now(const std::vector<Direction>&) const;
-template Everything<Jet<1>> DriveInTime::now(const std::vector<Direction>&) const;
+template Dynamics<double> DriveInTime::now(const std::vector<Direction>&) const;
+template Dynamics<Jet<1>> DriveInTime::now(const std::vector<Direction>&) const;
 
 template <Scalar S>
-S DriveInTime::output(OutputId which, const Everything<S>& at) const {
-  const Motion<S>& m = at.motion;
+S DriveInTime::output(OutputId which, const Dynamics<S>& dynamics) const {
+  const Motion<S>& m = dynamics.motion;
   const Vehicle<double>& v = vehicle();
   switch (which) {
-    case OutputId::crank_angle: return at.angle;
-    case OutputId::crank_speed: return at.shaft_speed;
-    case OutputId::stroke_angle: return at.stroke_angle;
+    case OutputId::crank_angle: return dynamics.angle;
+    case OutputId::crank_speed: return dynamics.shaft_speed;
+    case OutputId::stroke_angle: return dynamics.stroke_angle;
     case OutputId::flapping_velocity: return m.stroke_velocity;
-    case OutputId::pitch_angle: return at.pitch_angle;
-    case OutputId::pitch_velocity: return at.pitch_velocity;
+    case OutputId::pitch_angle: return dynamics.pitch_angle;
+    case OutputId::pitch_velocity: return dynamics.pitch_velocity;
     case OutputId::current: return m.current;
     case OutputId::terminal_voltage: return m.voltage;
     case OutputId::lift: return m.aero.lift;
@@ -303,13 +304,14 @@ S DriveInTime::output(OutputId which, const Everything<S>& at) const {
     case OutputId::motor_torque: return m.motor_torque;
     case OutputId::friction_torque: return m.friction_torque;
     case OutputId::power_electrical: return m.voltage * m.current;
-    case OutputId::power_motor: return m.motor_torque * at.shaft_speed;
-    case OutputId::power_friction: return m.friction_torque * at.shaft_speed;
+    case OutputId::power_motor: return m.motor_torque * dynamics.shaft_speed;
+    case OutputId::power_friction: return m.friction_torque * dynamics.shaft_speed;
     case OutputId::power_aerodynamic: return m.aero.power;
     case OutputId::power_copper: return v.motor.armature_resistance * m.current * m.current;
-    case OutputId::power_viscous: return v.motor.viscous_damping * at.shaft_speed * at.shaft_speed;
-    case OutputId::power_motor_friction: return v.motor.friction_torque * sign_of(at.shaft_speed) * at.shaft_speed;
-    case OutputId::power_load: return at.load_torque * at.shaft_speed;
+    case OutputId::power_viscous: return v.motor.viscous_damping * dynamics.shaft_speed * dynamics.shaft_speed;
+    case OutputId::power_motor_friction:
+      return v.motor.friction_torque * sign_of(dynamics.shaft_speed) * dynamics.shaft_speed;
+    case OutputId::power_load: return dynamics.load_torque * dynamics.shaft_speed;
     case OutputId::roll_moment:
     case OutputId::pitch_moment:
     case OutputId::yaw_moment:
@@ -317,14 +319,14 @@ S DriveInTime::output(OutputId which, const Everything<S>& at) const {
   }
   return S(0.0);
 }
-template double DriveInTime::output(OutputId, const Everything<double>&) const;
-template Jet<1> DriveInTime::output(OutputId, const Everything<Jet<1>>&) const;
+template double DriveInTime::output(OutputId, const Dynamics<double>&) const;
+template Jet<1> DriveInTime::output(OutputId, const Dynamics<Jet<1>>&) const;
 
 std::vector<double> DriveInTime::rates() const {
-  const Everything<double> at = now<double>({});
-  std::vector<double> rates(at.rates.begin(), at.rates.begin() + long(layout_.at.count));
+  const Dynamics<double> dynamics = now<double>({});
+  std::vector<double> rates(dynamics.rates.begin(), dynamics.rates.begin() + long(layout_.indices.count));
   if (layout_.has_phase) rates.push_back(two_pi * inputs_.frequency);
-  for (const ExposedSum& sum : exposed_sums) rates.push_back(at.integrands[std::size_t(sum.integral)]);
+  for (const ExposedSum& sum : exposed_sums) rates.push_back(dynamics.integrands[std::size_t(sum.integral)]);
   return rates;
 }
 
@@ -333,7 +335,7 @@ std::vector<double> DriveInTime::nominals() const {
       [&](const auto& model) {
         const auto typical = model.typical();
         std::vector<double> sizes;
-        for (std::size_t k = 0; k < layout_.at.count; ++k) sizes.push_back(typical[k] > 0.0 ? typical[k] : 1.0);
+        for (std::size_t k = 0; k < layout_.indices.count; ++k) sizes.push_back(typical[k] > 0.0 ? typical[k] : 1.0);
         if (layout_.has_phase) sizes.push_back(1.0);
         // Of the sums what a tenth of a second gives, about.
         const double current = std::max(std::abs(inputs_.voltage), 1e-3) / circuit_resistance(model.vehicle);
@@ -351,7 +353,7 @@ double DriveInTime::mean(MeanId which) const {
       [&](const auto& model) {
         const CycleMeans& means = model.means;
         if (!model.has_means()) return 0.0;
-        const auto mean = [&](Integral of) { return means.mean[detail::quadrature_of(of)]; };
+        const auto mean = [&](Integral integral) { return means.mean[detail::quadrature_of(integral)]; };
         switch (which) {
           case MeanId::frequency: return 1.0 / means.period;
           case MeanId::lift: return mean(Integral::lift);

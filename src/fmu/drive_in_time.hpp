@@ -20,8 +20,8 @@ struct Inputs {
   double voltage = 0.0, voltage_offset = 0.0, duty = 1.0, load_torque = 0.0, frequency = 0.0;
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.voltage, of.voltage_offset, of.duty, of.load_torque, of.frequency);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.voltage, self.voltage_offset, self.duty, self.load_torque, self.frequency);
   }
 };
 
@@ -31,8 +31,9 @@ struct Settings {
          hinge_offset = 0.0;
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.tolerance, of.angle, of.speed, of.current, of.pitch_angle, of.pitch_velocity, of.hinge_offset);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.tolerance, self.angle, self.speed, self.current, self.pitch_angle, self.pitch_velocity,
+               self.hinge_offset);
   }
 };
 
@@ -85,9 +86,9 @@ class DriveInTime {
   };
   /// What acts, of the vehicle as parameters and inputs are, at the model's state; on dual numbers along `knowns`.
   template <Scalar S>
-  Everything<S> now(const std::vector<Direction>& knowns) const;
+  Dynamics<S> now(const std::vector<Direction>& knowns) const;
   template <Scalar S>
-  S output(OutputId which, const Everything<S>& at) const;
+  S output(OutputId which, const Dynamics<S>& dynamics) const;
   /// 0 where there was no whole cycle since the last standstill.
   double mean(MeanId which) const;
   Status status() const;

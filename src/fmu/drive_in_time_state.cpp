@@ -6,14 +6,14 @@
 namespace wingbeat::fmu {
 
 DriveInTime::Moving DriveInTime::motion() const {
-  Moving of;
+  Moving moving;
   std::visit(
       [&](const auto& model) {
-        model.now.each(model.now, [&](const auto& x) { of.numbers.push_back(double(x)); });
-        of.means = model.means;
+        model.now.each(model.now, [&](const auto& x) { moving.numbers.push_back(double(x)); });
+        moving.means = model.means;
       },
       model_);
-  return of;
+  return moving;
 }
 
 void DriveInTime::set_motion(const Moving& to) {

@@ -43,23 +43,23 @@ const DriveInTime* Instance::drive(std::size_t side) const {
 
 /// Of a side, or of two together, which act on the body. Axes as in study/body_derivatives.hpp.
 template <Scalar S>
-S Instance::output(OutputId which, std::size_t side, const std::vector<Everything<S>>& at) const {
+S Instance::output(OutputId which, std::size_t side, const std::vector<Dynamics<S>>& dynamics) const {
   using std::cos;
   using std::sin;
-  if (const DriveInTime* const one = drive(side)) return one->output(which, at[two_ ? side - 1 : 0]);
+  if (const DriveInTime* const one = drive(side)) return one->output(which, dynamics[two_ ? side - 1 : 0]);
   S sum(0.0);
   for (std::size_t k = 0; k < 2; ++k) {
     const BladeElement<double>& wings = drives_[k]->vehicle().wings;
     const double centre = wings.s2 > 0.0 ? wings.s3 / wings.s2 : 0.0, left = k == 0 ? 1.0 : -1.0;
-    const AeroLoads<S>& air = at[k].motion.aero;
-    const S& beta = at[k].stroke_angle;
+    const AeroLoads<S>& air = dynamics[k].motion.aero;
+    const S& beta = dynamics[k].stroke_angle;
     switch (which) {
       case OutputId::roll_moment: sum = sum + left * air.lift * (settings_.hinge_offset + centre * cos(beta)); break;
       case OutputId::pitch_moment: sum = sum + air.lift * centre * sin(beta); break;
       case OutputId::yaw_moment:
         if (centre > 0.0) sum = sum - left * air.moment * (1.0 + settings_.hinge_offset / centre * cos(beta));
         break;
-      default: sum = sum + drives_[k]->output(which, at[k]); break;
+      default: sum = sum + drives_[k]->output(which, dynamics[k]); break;
     }
   }
   return sum;
@@ -78,9 +78,9 @@ std::optional<double> Instance::real(std::size_t reference) const {
     case VariableKind::output: {
       const OutputId which = OutputId(index);
       if (index >= std::size_t(OutputId::last) || (!one && !(two_ && side == 0 && has_total(which)))) return {};
-      std::vector<Everything<double>> at;
-      for (const auto& of : drives_) at.push_back(of->now<double>({}));
-      return output(which, side, at);
+      std::vector<Dynamics<double>> dynamics;
+      for (const auto& drive : drives_) dynamics.push_back(drive->now<double>({}));
+      return output(which, side, dynamics);
     }
     case VariableKind::mean: {
       const MeanId which = MeanId(index);
@@ -156,7 +156,7 @@ bool Instance::set_real(std::size_t reference, double value) {
 
 std::vector<double> Instance::directional(const std::vector<std::size_t>& unknowns,
                                           const std::vector<Direction>& knowns) const {
-  std::vector<Everything<Jet<1>>> at;
+  std::vector<Dynamics<Jet<1>>> dynamics;
   const auto by_input = [&](std::size_t side, InputId input) {
     double change = 0.0;
     for (const Direction& d : knowns) {
@@ -171,20 +171,20 @@ std::vector<double> Instance::directional(const std::vector<std::size_t>& unknow
         own.push_back({kind_of(d.reference), index_of(d.reference), d.change});
       }
     }
-    at.push_back(drives_[k]->now<Jet<1>>(own));
+    dynamics.push_back(drives_[k]->now<Jet<1>>(own));
   }
   std::vector<double> found;
   for (const std::size_t reference : unknowns) {
     const std::size_t side = side_of(reference), index = index_of(reference);
     if (kind_of(reference) == VariableKind::output) {
-      found.push_back(output(OutputId(index), side, at).v[0]);
+      found.push_back(output(OutputId(index), side, dynamics).v[0]);
       continue;
     }
     const StateLayout& layout = drive(side)->layout();
-    const Everything<Jet<1>>& of = at[two_ ? side - 1 : 0];
-    if (index < layout.at.count) found.push_back(of.rates[index].v[0]);
+    const Dynamics<Jet<1>>& along = dynamics[two_ ? side - 1 : 0];
+    if (index < layout.indices.count) found.push_back(along.rates[index].v[0]);
     else if (index < layout.first_sum()) found.push_back(two_pi * by_input(side, InputId::frequency));
-    else found.push_back(of.integrands[std::size_t(exposed_sums[index - layout.first_sum()].integral)].v[0]);
+    else found.push_back(along.integrands[std::size_t(exposed_sums[index - layout.first_sum()].integral)].v[0]);
   }
   return found;
 }

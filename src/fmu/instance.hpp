@@ -81,7 +81,7 @@ class Instance {
   /// Of the drive that a side is; nullptr where there is none.
   const DriveInTime* drive(std::size_t side) const;
   template <Scalar S>
-  S output(OutputId which, std::size_t side, const std::vector<Everything<S>>& at) const;
+  S output(OutputId which, std::size_t side, const std::vector<Dynamics<S>>& dynamics) const;
 
   Design<double> given_, design_;
   bool two_;

@@ -8,7 +8,7 @@
 #include <optional>
 #include <type_traits>
 
-#include "fmu/instant.hpp"
+#include "fmu/dynamics.hpp"
 #include "time/crank_model.hpp"
 #include "time/direct_model.hpp"
 #include "time/pitch_direct_model.hpp"
@@ -34,12 +34,12 @@ struct CycleMeans {
 
   /// Calls use(number) for each of them.
   template <class Self, class Use>
-  static void each(Self& of, const Use& use) {
-    for (auto* numbers : {&of.sums, &of.at_begin, &of.mean}) {
+  static void each(Self& self, const Use& use) {
+    for (auto* numbers : {&self.sums, &self.at_begin, &self.mean}) {
       for (auto& x : *numbers) use(x);
     }
-    use(of.begin), use(of.mark), use(of.period), use(of.phase), use(of.phase_time), use(of.direction);
-    use(of.stood_since), use(of.whole), use(of.rests), use(of.stood), use(of.cycles);
+    use(self.begin), use(self.mark), use(self.period), use(self.phase), use(self.phase_time), use(self.direction);
+    use(self.stood_since), use(self.whole), use(self.rests), use(self.stood), use(self.cycles);
   }
 
   void begin_cycle(double time) {
@@ -189,12 +189,12 @@ class MeasuredModel : public Base {
   bool has_means() const { return means.whole && !stands() && !this->ended(); }
 
   Mode mode() const {
-    Mode of;
-    of.stuck = this->now.stuck;
-    if constexpr (requires { this->now.held; }) of.held = this->now.held;
-    if constexpr (crank) of.direction = this->now.branch.direction;
-    else if constexpr (requires { this->now.direction; }) of.direction = this->now.direction;
-    return of;
+    Mode mode;
+    mode.stuck = this->now.stuck;
+    if constexpr (requires { this->now.held; }) mode.held = this->now.held;
+    if constexpr (crank) mode.direction = this->now.branch.direction;
+    else if constexpr (requires { this->now.direction; }) mode.direction = this->now.direction;
+    return mode;
   }
 
  private:
@@ -216,13 +216,13 @@ class MeasuredModel : public Base {
   /// How far speed and rates of speed and current, over their typical sizes, are above what counts as rest, where the
   /// crank turns; how far below what counts as turning, where it rests.
   double rest_margin(double t, const double* y) const {
-    constexpr double most = 4.0 * rest_level;
+    constexpr double max_motion = 4.0 * rest_level;
     double motion = std::abs(y[1]) / rest_speed, dy[max_unknowns] = {};
-    if (motion < most && Base::rates(t, y, dy, false)) {
+    if (motion < max_motion && Base::rates(t, y, dy, false)) {
       motion = std::max(motion, std::abs(dy[1]) / square(rest_speed));
       if (this->inductive) motion = std::max(motion, std::abs(dy[2]) / (rest_speed * rest_current));
     }
-    motion = std::min(motion, most) / rest_level;
+    motion = std::min(motion, max_motion) / rest_level;
     return means.rests ? 2.0 - motion : motion - 1.0;
   }
 
@@ -266,8 +266,8 @@ IntegratorProblem problem_of(const fmu::MeasuredModel<Base>& model, const double
     return true;
   };
   p.root_functions = [&model](double t, const double* y, double* values) {
-    const auto at = model.indicators(t, y);
-    std::copy(at.begin(), at.end(), values);
+    const auto indicators = model.indicators(t, y);
+    std::copy(indicators.begin(), indicators.end(), values);
   };
   // Loose for the sums, which nothing depends on: they follow the unknowns' steps.
   p.tolerated = [&model, &relative](const double* y, double* errors) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "fmu/instant.hpp"
+#include "fmu/dynamics.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::fmu {
@@ -54,13 +54,13 @@ constexpr Row mean_rows[] = {{"frequency_mean", "Hz", "flapping frequency"},
                              {"power_copper_mean", "W", "mean loss in the armature resistance"}};
 static_assert(std::size(mean_rows) == std::size_t(MeanId::last));
 
-bool has_output(OutputId which, const Places& at) {
+bool has_output(OutputId which, const StateIndices& indices) {
   switch (which) {
     case OutputId::crank_angle:
     case OutputId::crank_speed:
-    case OutputId::rod_force: return at.crank;
+    case OutputId::rod_force: return indices.crank;
     case OutputId::pitch_angle:
-    case OutputId::pitch_velocity: return at.pitching;
+    case OutputId::pitch_velocity: return indices.pitching;
     case OutputId::roll_moment:
     case OutputId::pitch_moment:
     case OutputId::yaw_moment: return false;
@@ -69,16 +69,16 @@ bool has_output(OutputId which, const Places& at) {
 }
 
 std::vector<Row> state_rows(const StateLayout& layout) {
-  const Places& at = layout.at;
-  std::vector<Row> rows(at.count);
-  rows[0] = at.crank ? Row{"state_crank_angle", "rad", "crank angle, not wrapped"}
-                     : Row{"state_stroke_angle", "rad", "stroke angle"};
-  rows[1] = at.crank ? Row{"state_crank_speed", "rad/s", "crank speed"}
-                     : Row{"state_flapping_velocity", "rad/s", "rate of the stroke angle"};
-  if (at.inductive) rows[at.current] = {"state_current", "A", "armature current of all motors"};
-  if (at.pitching) {
-    rows[at.pitch] = {"state_pitch_angle", "rad", "pitch angle of the wings"};
-    rows[at.pitch + 1] = {"state_pitch_velocity", "rad/s", "rate of the pitch angle"};
+  const StateIndices& indices = layout.indices;
+  std::vector<Row> rows(indices.count);
+  rows[0] = indices.crank ? Row{"state_crank_angle", "rad", "crank angle, not wrapped"}
+                          : Row{"state_stroke_angle", "rad", "stroke angle"};
+  rows[1] = indices.crank ? Row{"state_crank_speed", "rad/s", "crank speed"}
+                          : Row{"state_flapping_velocity", "rad/s", "rate of the stroke angle"};
+  if (indices.inductive) rows[indices.current] = {"state_current", "A", "armature current of all motors"};
+  if (indices.pitching) {
+    rows[indices.pitch] = {"state_pitch_angle", "rad", "pitch angle of the wings"};
+    rows[indices.pitch + 1] = {"state_pitch_velocity", "rad/s", "rate of the pitch angle"};
   }
   if (layout.has_phase) rows.push_back({"state_supply_phase", "rad", "phase of the supply, not wrapped"});
   for (const ExposedSum& sum : exposed_sums) rows.push_back({sum.name, sum.unit, sum.description});
@@ -163,7 +163,7 @@ void add_parameters(Table& table, const Design<double>& design) {
     if (std::isfinite(p.range.upper)) v.max = p.range.upper * (p.range.below_upper ? below : 1.0);
     if (p.path == "vehicle.motors" && has_two_drives(design)) v.min = v.max = 2.0;
   }
-  const Places at(resolve(design));
+  const StateIndices indices(resolve(design));
   const auto setting = [&](SettingId id, const char* name, const char* unit, const char* description) -> Variable& {
     return table.add(VariableKind::setting, std::size_t(id), name, unit, description, "parameter", "fixed", "exact");
   };
@@ -173,8 +173,8 @@ void add_parameters(Table& table, const Design<double>& design) {
   tolerance.max = 1e-2;
   setting(SettingId::angle, "initial_angle", "rad", "crank angle, of a direct drive stroke angle, at the start");
   setting(SettingId::speed, "initial_speed", "rad/s", "its rate at the start");
-  if (at.inductive) setting(SettingId::current, "initial_current", "A", "armature current at the start");
-  if (at.pitching) {
+  if (indices.inductive) setting(SettingId::current, "initial_current", "A", "armature current at the start");
+  if (indices.pitching) {
     setting(SettingId::pitch_angle, "initial_pitch_angle", "rad", "pitch angle at the start");
     setting(SettingId::pitch_velocity, "initial_pitch_velocity", "rad/s", "its rate at the start");
   }
@@ -211,13 +211,13 @@ bool is_tunable(std::string_view key) {
 }
 
 std::vector<Watched> watched_events(const Vehicle<double>& v) {
-  const Places at(v);
+  const StateIndices indices(v);
   std::vector<Watched> events;
-  if (at.crank) events = {Watched::standstill, Watched::jam};
-  if (at.pitching && has_stop(v.pitch.hinge)) events.push_back(Watched::stop);
+  if (indices.crank) events = {Watched::standstill, Watched::jam};
+  if (indices.pitching && has_stop(v.pitch.hinge)) events.push_back(Watched::stop);
   events.push_back(Watched::cycle_end);
-  if (at.crank) events.push_back(Watched::rest);
-  if (!at.crank && !at.pitching) events.push_back(Watched::slip_end);
+  if (indices.crank) events.push_back(Watched::rest);
+  if (!indices.crank && !indices.pitching) events.push_back(Watched::slip_end);
   return events;
 }
 
@@ -259,7 +259,7 @@ std::string unit_in_fmu(std::string_view unit) {
 std::vector<Variable> variables_of(const Design<double>& design) {
   const Vehicle<double> vehicle = drive_vehicle(design, has_two_drives(design));
   const StateLayout layout(vehicle);
-  const Places& at = layout.at;
+  const StateIndices& indices = layout.indices;
   const bool two = has_two_drives(design);
   const std::size_t first = two ? 1 : 0, last = two ? 2 : 0;
   Table table;
@@ -302,7 +302,7 @@ std::vector<Variable> variables_of(const Design<double>& design) {
   }
   on_sides([&] {
     for (std::size_t k = 0; k < std::size(output_rows); ++k) {
-      if (has_output(OutputId(k), at)) output(k);
+      if (has_output(OutputId(k), indices)) output(k);
     }
   });
   for (std::size_t k = 0; two && k < std::size(mean_rows); ++k) {

@@ -139,11 +139,11 @@ CoefficientTable::CoefficientTable(std::vector<double> alpha, std::vector<double
   const CoefficientLookup found = lookup();
   std::vector<int> in_bucket(first_.size(), 0);
   for (const double x : alpha_) {
-    const double at = (x - found.front) * found.buckets_per_angle;
-    ++in_bucket[std::size_t(std::min(at, double(first_.size() - 1)))];
+    const double position = (x - found.front) * found.buckets_per_angle;
+    ++in_bucket[std::size_t(std::min(position, double(first_.size() - 1)))];
   }
   for (std::size_t b = 1; b < first_.size(); ++b) first_[b] = first_[b - 1] + in_bucket[b - 1];
-  most_ = *std::max_element(in_bucket.begin(), in_bucket.end());
+  max_in_bucket_ = *std::max_element(in_bucket.begin(), in_bucket.end());
   lay_steps();
 }
 
@@ -153,8 +153,8 @@ void CoefficientTable::lay_steps() {
   const double range = alpha_.back() - alpha_.front();
   const auto knots_on_edges = [&](int steps) {
     return std::all_of(alpha_.begin(), alpha_.end(), [&](double x) {
-      const double at = (x - alpha_.front()) / range * steps;
-      return std::abs(at - std::round(at)) < rounding * steps;
+      const double position = (x - alpha_.front()) / range * steps;
+      return std::abs(position - std::round(position)) < rounding * steps;
     });
   };
   int steps = int(alpha_.size()) - 1;
@@ -178,7 +178,7 @@ CoefficientLookup CoefficientTable::lookup() const {
           rows_.data(),
           first_.data(),
           int(first_.size()),
-          most_,
+          max_in_bucket_,
           alpha_.front(),
           double(first_.size()) / (alpha_.back() - alpha_.front()),
           steps_.empty() ? nullptr : steps_.data(),

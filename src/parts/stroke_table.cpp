@@ -125,9 +125,9 @@ StrokeCurve::StrokeCurve(std::vector<std::pair<double, double>> rows) : rows_(st
   // A reversal at crank angle 0 itself is not listed.
   constexpr double zero = 1e-9;
   std::erase_if(turning, [](double angle) { return angle < zero || angle > two_pi - zero; });
-  if (turning.size() > Reversals::most) {
+  if (turning.size() > Reversals::max_count) {
     throw ParameterError(key, "the stroke turns " + std::to_string(turning.size()) +
-                                  " times in a turn of the crank, at most " + std::to_string(Reversals::most) +
+                                  " times in a turn of the crank, at most " + std::to_string(Reversals::max_count) +
                                   " are allowed: smooth the table");
   }
   std::copy(turning.begin(), turning.end(), reversals_.angle.begin());
@@ -137,8 +137,8 @@ StrokeCurve::StrokeCurve(std::vector<std::pair<double, double>> rows) : rows_(st
 }
 
 const StrokeCurve::Piece& StrokeCurve::piece(double position) const {
-  const auto after = std::upper_bound(pieces_.begin() + 1, pieces_.end(), position,
-                                      [](double at, const Piece& p) { return at < p.x0; });
+  const auto after =
+      std::upper_bound(pieces_.begin() + 1, pieces_.end(), position, [](double x, const Piece& p) { return x < p.x0; });
   return *(after - 1);
 }
 

@@ -8,7 +8,7 @@
 
 namespace wingbeat {
 
-std::vector<Loop> boundaries(const Grid& g, double level) {
+std::vector<Loop> boundaries(const ContourGrid& g, double level) {
   const int nx = int(g.x.size()), ny = int(g.y.size());
   // A frame around the grid, of no width, that lies outside the region.
   const auto inside = [&](int i, int j) {
@@ -18,7 +18,7 @@ std::vector<Loop> boundaries(const Grid& g, double level) {
     return logarithmic ? a * std::pow(b / a, t) : a + t * (b - a);
   };
   const auto node = [&](int i, int j) {
-    return Point{g.x[std::size_t(std::clamp(i, 0, nx - 1))], g.y[std::size_t(std::clamp(j, 0, ny - 1))]};
+    return ContourPoint{g.x[std::size_t(std::clamp(i, 0, nx - 1))], g.y[std::size_t(std::clamp(j, 0, ny - 1))]};
   };
   const auto value = [&](int i, int j) {
     return i >= 0 && j >= 0 && i < nx && j < ny ? g.z[std::size_t(i * ny + j)]
@@ -31,10 +31,10 @@ std::vector<Loop> boundaries(const Grid& g, double level) {
   };
   const auto crossing = [&](const Edge& e) {
     const int i = e.along_x ? e.i + 1 : e.i, j = e.along_x ? e.j : e.j + 1;
-    const Point p = node(e.i, e.j), q = node(i, j);
+    const ContourPoint p = node(e.i, e.j), q = node(i, j);
     const double a = value(e.i, e.j), b = value(i, j);
     const double t = std::isinf(a) ? 1.0 : std::isinf(b) ? 0.0 : std::clamp((level - a) / (b - a), 0.0, 1.0);
-    return Point{between(p.x, q.x, t, g.log_x), between(p.y, q.y, t, g.log_y)};
+    return ContourPoint{between(p.x, q.x, t, g.log_x), between(p.y, q.y, t, g.log_y)};
   };
 
   std::map<Edge, Edge> next;
@@ -57,12 +57,12 @@ std::vector<Loop> boundaries(const Grid& g, double level) {
   std::vector<Loop> loops;
   while (!next.empty()) {
     Loop loop;
-    for (auto at = next.begin(); at != next.end();) {
-      const Point p = crossing(at->first);
+    for (auto found = next.begin(); found != next.end();) {
+      const ContourPoint p = crossing(found->first);
       if (loop.empty() || p.x != loop.back().x || p.y != loop.back().y) loop.push_back(p);
-      const Edge to = at->second;
-      next.erase(at);
-      at = next.find(to);
+      const Edge to = found->second;
+      next.erase(found);
+      found = next.find(to);
     }
     if (loop.size() > 2) loops.push_back(std::move(loop));
   }
@@ -73,21 +73,21 @@ void add_filled(Figure& figure, const std::string& name, const std::vector<Loop>
   figure.add("${} << END\n", name);
   if (loops.empty()) figure.add("NaN NaN\n");
   for (const Loop& loop : loops) {
-    for (const Point& p : loop) figure.add("{} {}\n", p.x, p.y);
+    for (const ContourPoint& p : loop) figure.add("{} {}\n", p.x, p.y);
     figure.add("{} {}\n{} {}\n", loop.front().x, loop.front().y, loops.front().front().x, loops.front().front().y);
   }
   figure.add("END\n");
 }
 
-void add_outline(Figure& figure, const std::string& name, const Grid& g, const std::vector<Loop>& loops) {
+void add_outline(Figure& figure, const std::string& name, const ContourGrid& g, const std::vector<Loop>& loops) {
   figure.add("${} << END\nNaN NaN\n", name);
-  const auto on_edge = [&](const Point& p, const Point& q) {
+  const auto on_edge = [&](const ContourPoint& p, const ContourPoint& q) {
     return (p.x == q.x && (p.x == g.x.front() || p.x == g.x.back())) ||
            (p.y == q.y && (p.y == g.y.front() || p.y == g.y.back()));
   };
   for (const Loop& loop : loops) {
     for (std::size_t n = 0; n < loop.size(); ++n) {
-      const Point &p = loop[n], &q = loop[(n + 1) % loop.size()];
+      const ContourPoint &p = loop[n], &q = loop[(n + 1) % loop.size()];
       if (on_edge(p, q)) figure.add("\n");
       else figure.add("{} {}\n{} {}\n", p.x, p.y, q.x, q.y);
     }
@@ -96,34 +96,34 @@ void add_outline(Figure& figure, const std::string& name, const Grid& g, const s
   figure.add("END\n");
 }
 
-void extend(Grid& g) {
+void extend(ContourGrid& g) {
   const int nx = int(g.x.size()), ny = int(g.y.size());
   std::vector<std::size_t> front;
   for (std::size_t n = 0; n < g.z.size(); ++n) {
     if (std::isfinite(g.z[n])) front.push_back(n);
   }
-  for (std::size_t at = 0; at < front.size(); ++at) {
-    const int i = int(front[at]) / ny, j = int(front[at]) % ny;
+  for (std::size_t next = 0; next < front.size(); ++next) {
+    const int i = int(front[next]) / ny, j = int(front[next]) % ny;
     for (const auto& [di, dj] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
       if (i + di < 0 || j + dj < 0 || i + di >= nx || j + dj >= ny) continue;
       const std::size_t n = std::size_t((i + di) * ny + j + dj);
       if (std::isfinite(g.z[n])) continue;
-      g.z[n] = g.z[front[at]];
+      g.z[n] = g.z[front[next]];
       front.push_back(n);
     }
   }
 }
 
-void smooth(Grid& g) {
+void smooth(ContourGrid& g) {
   const int nx = int(g.x.size()), ny = int(g.y.size());
   const auto pass = [&](int di, int dj) {
     const std::vector<double> z = g.z;
     for (int i = 0; i < nx; ++i) {
       for (int j = 0; j < ny; ++j) {
-        const auto at = [&](int s) {
+        const auto value_at = [&](int s) {
           return z[std::size_t(std::clamp(i + s * di, 0, nx - 1) * ny + std::clamp(j + s * dj, 0, ny - 1))];
         };
-        g.z[std::size_t(i * ny + j)] = 0.25 * at(-1) + 0.5 * at(0) + 0.25 * at(1);
+        g.z[std::size_t(i * ny + j)] = 0.25 * value_at(-1) + 0.5 * value_at(0) + 0.25 * value_at(1);
       }
     }
   };

@@ -103,10 +103,10 @@ void plot_step_responses(const ControlModels& models, PlotFormat format, const s
     const double top = 1.0 - (head + (each + gap) * double(input)) / inches, bottom = top - each / inches;
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", top, bottom);
     const bool steadily = changes_steadily(model, input, outputs);
-    const double most = std::max(1.0, responses[input].topRows(cycles).maxCoeff());
+    const double highest = std::max(1.0, responses[input].topRows(cycles).maxCoeff());
     const double least = std::min(0.0, responses[input].topRows(cycles).minCoeff());
-    figure.add("set yrange [{}:{}]\nset ytics {}\n", least - 0.06 * (most - least), most + 0.1 * (most - least),
-               most - least > 2.2 ? 1.0 : 0.5);
+    figure.add("set yrange [{}:{}]\nset ytics {}\n", least - 0.06 * (highest - least),
+               highest + 0.1 * (highest - least), highest - least > 2.2 ? 1.0 : 0.5);
     figure.text(fmt::format("step of {}", in_words(map.inputs[input].name)), style::heading_size,
                 fmt::format("screen {},{} left", left, top + 0.09 / inches));
     figure.text(steadily ? "per steady change" : "per largest change", style::text_size,

@@ -17,19 +17,19 @@ using detail::Json;
 
 // ---- TOML
 
-bool is_table(const Json& of) { return of.is_object(); }
-bool is_tables(const Json& of) { return of.is_array() && !of.empty() && of.front().is_object(); }
+bool is_table(const Json& value) { return value.is_object(); }
+bool is_tables(const Json& value) { return value.is_array() && !value.empty() && value.front().is_object(); }
 
-std::string value_in_toml(const Json& of) {
-  if (of.is_null()) return "nan";
-  if (of.is_number_float()) {
-    const std::string text = fmt::format("{}", of.get<double>());
+std::string value_in_toml(const Json& value) {
+  if (value.is_null()) return "nan";
+  if (value.is_number_float()) {
+    const std::string text = fmt::format("{}", value.get<double>());
     return text.find_first_of(".en") == std::string::npos ? text + ".0" : text;
   }
-  if (of.is_string()) return toml_text(of.get<std::string>());
-  if (!of.is_array()) return of.dump();
+  if (value.is_string()) return toml_text(value.get<std::string>());
+  if (!value.is_array()) return value.dump();
   std::string text = "[";
-  for (const Json& x : of) text += fmt::format("{}{}", &x == &of.front() ? "" : ", ", value_in_toml(x));
+  for (const Json& x : value) text += fmt::format("{}{}", &x == &value.front() ? "" : ", ", value_in_toml(x));
   return text + "]";
 }
 
@@ -68,9 +68,9 @@ void put_matrix(std::string& text, const char* name, const Eigen::MatrixXd& m, c
   }
 }
 
-std::vector<std::string> names_in(const std::vector<CycleSignal>& of) {
+std::vector<std::string> names_in(const std::vector<CycleSignal>& signals) {
   std::vector<std::string> names;
-  for (const CycleSignal& s : of) names.push_back(s.name);
+  for (const CycleSignal& s : signals) names.push_back(s.name);
   return names;
 }
 
@@ -132,17 +132,18 @@ std::string toml_control(const ControlModels& models, const std::string& version
 }
 
 std::string text_control(const ControlModels& models) {
-  const RunResult& at = models.linear.operating_point;
-  std::string text = at.design.name.empty() ? std::string() : at.design.name + "\n";
+  const RunResult& operating_point = models.linear.operating_point;
+  std::string text = operating_point.design.name.empty() ? std::string() : operating_point.design.name + "\n";
   auto out = std::back_inserter(text);
-  fmt::format_to(out, "{}: {}\n", name_of(at.status), describe(at));
+  fmt::format_to(out, "{}: {}\n", name_of(operating_point.status), describe(operating_point));
   if (!models.linear.model) return text;
   fmt::format_to(out, "\nOperating point{}: {}, {}, mean lift {}\n",
-                 models.options.at.condition == Condition::air
+                 models.options.operating_point.condition == Condition::air
                      ? std::string()
-                     : fmt::format(" ({})", name_of(models.options.at.condition)),
-                 readable(at.metrics[Metric::voltage], "V"), readable(at.metrics[Metric::frequency], "Hz"),
-                 readable(at.metrics[Metric::lift_mean], "N"));
+                     : fmt::format(" ({})", name_of(models.options.operating_point.condition)),
+                 readable(operating_point.metrics[Metric::voltage], "V"),
+                 readable(operating_point.metrics[Metric::frequency], "Hz"),
+                 readable(operating_point.metrics[Metric::lift_mean], "N"));
   put_model(text, *models.linear.model);
   if (models.body) {
     text += "\nCycle-averaged derivatives by the body's motion, axes forward, right, down";

@@ -173,7 +173,8 @@ const Description<ControlFound>& control_description() {
           .always("written_by", "", "",
                   [](const R& r) { return fmt::format("Written by wingbeat {} linearise", r.version); })
           .always("vehicle", "", "", [](const R& r) { return r.run().design.name; })
-          .always("condition", "", "", [](const R& r) { return std::string(name_of(r.models.options.at.condition)); })
+          .always("condition", "", "",
+                  [](const R& r) { return std::string(name_of(r.models.options.operating_point.condition)); })
           .always(
               "status", "", "", [](const R& r) { return Json(name_of(r.run().status)); }, schema::statuses())
           .always("status_detail", "", "a sentence with the evidence", [](const R& r) { return describe(r.run()); })

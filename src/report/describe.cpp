@@ -28,9 +28,10 @@ std::string describe_frequency(const SearchFinding& f, const char* inside) {
                                   ? describe(f.limits)
                                   : fmt::format("the angle of attack falls below {:.4g} deg", extrapolation_angle_deg);
       std::string text = fmt::format("{}{}: at {:.4g} V, where it flaps at {:.4g} Hz, {}", cannot, inside,
-                                     f.at->voltage, f.at->value, why);
-      if (f.most)
-        text += fmt::format("; inside it flaps at {:.4g} Hz at most, at {:.4g} V", f.most->value, f.most->voltage);
+                                     f.point->voltage, f.point->value, why);
+      if (f.max_point)
+        text += fmt::format("; inside it flaps at {:.4g} Hz at most, at {:.4g} V", f.max_point->value,
+                            f.max_point->voltage);
       return text;
     }
     case Finding::beyond_any_voltage: {
@@ -45,17 +46,17 @@ std::string describe_frequency(const SearchFinding& f, const char* inside) {
     case Finding::jumps:
       return fmt::format(
           "at {:.5g} V the flapping frequency jumps from {:.5g} Hz to {:.5g} Hz: {:.5g} Hz in between cannot be held",
-          f.at->voltage, f.least->value, f.at->value, f.target);
+          f.point->voltage, f.min_point->value, f.point->value, f.target);
     case Finding::too_low_at_first:
       return fmt::format("{}: at {:.4g} V, the lowest voltage tried, it flaps at {:.4g} Hz already", cannot,
-                         f.at->voltage, f.at->value);
+                         f.point->voltage, f.point->value);
     case Finding::too_low_at_onset:
       return fmt::format("{}: from rest it flaps only above {:.4g} V, and there at {:.4g} Hz already", cannot,
-                         f.at->voltage, f.at->value) +
+                         f.point->voltage, f.point->value) +
              below(f);
     case Finding::too_high:
       return fmt::format("{}: up to {:.4g} V it flaps at {:.4g} Hz at most, at {:.4g} V", cannot, f.last_voltage,
-                         f.most->value, f.most->voltage);
+                         f.max_point->value, f.max_point->voltage);
     default: return "";
   }
 }
@@ -65,29 +66,29 @@ std::string describe_lift(const SearchFinding& f, const char* inside) {
   switch (f.kind) {
     case Finding::no_wings_in_air: return cannot + ": without wings in air there is no lift";
     case Finding::out_of_range:
-      if (!f.most) {
+      if (!f.max_point) {
         return fmt::format("{}{}: it leaves it at every voltage at which it flaps; at {:.4g} V {}", cannot, inside,
-                           f.at->voltage, describe(f.limits));
+                           f.point->voltage, describe(f.limits));
       }
       return fmt::format(
           "{}{}: at {:.4g} V, where it lifts so much, {}; inside it lifts from {:.4g} N, at {:.4g} V, to {:.4g} N, at "
           "{:.4g} V",
-          cannot, inside, f.at->voltage, describe(f.limits), f.least->value, f.least->voltage, f.most->value,
-          f.most->voltage);
+          cannot, inside, f.point->voltage, describe(f.limits), f.min_point->value, f.min_point->voltage,
+          f.max_point->value, f.max_point->voltage);
     case Finding::jumps:
       return fmt::format(
           "at {:.5g} V the mean lift jumps from {:.5g} N to {:.5g} N: {:.5g} N in between cannot be held",
-          f.at->voltage, f.least->value, f.at->value, f.target);
+          f.point->voltage, f.min_point->value, f.point->value, f.target);
     case Finding::too_low_at_first:
       return fmt::format("{}{}: at {:.4g} V, the lowest voltage tried, it lifts {:.4g} N already", cannot, inside,
-                         f.at->voltage, f.at->value);
+                         f.point->voltage, f.point->value);
     case Finding::too_low_at_onset:
       return fmt::format("{}{}: from rest it flaps only above {:.4g} V, and there lifts {:.4g} N already", cannot,
-                         inside, f.at->voltage, f.at->value) +
+                         inside, f.point->voltage, f.point->value) +
              below(f);
     case Finding::too_high:
-      return fmt::format("{}{}: it lifts {:.4g} N at most, at {:.4g} V", cannot, inside, f.most->value,
-                         f.most->voltage) +
+      return fmt::format("{}{}: it lifts {:.4g} N at most, at {:.4g} V", cannot, inside, f.max_point->value,
+                         f.max_point->voltage) +
              (f.limits.empty() ? fmt::format(" (voltages up to {:.4g} V)", f.last_voltage)
                                : fmt::format("; at {:.4g} V {}", f.last_voltage, describe(f.limits)));
     default: return "";

@@ -166,7 +166,7 @@ class Description {
       else return std::optional<Json>(description.json(found));
     });
   }
-  /// The same, left out where there is nothing.
+  /// A part that is left out where there is nothing.
   template <class X, class Value>
   Description& sometimes_part(std::string key, std::string_view meaning, const Description<X>& description,
                               Value value) {
@@ -186,8 +186,8 @@ class Description {
   template <class X, class Value>
   Description& all_of(const Description<X>& description, Value value) {
     for (const auto& m : description.members()) {
-      members_.push_back(
-          {m.key, m.schema, m.always, [value, of = m.value](const R& r) { return of(std::invoke(value, r)); }});
+      members_.push_back({m.key, m.schema, m.always,
+                          [value, shown_value = m.value](const R& r) { return shown_value(std::invoke(value, r)); }});
     }
     return *this;
   }

@@ -251,13 +251,13 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
       break;
     case Hover::kept: line("hovers for", duration(f.time), minutes(f.time) + "   to the end"); break;
     case Hover::lost: {
-      const EnduranceRow& at = *result.hover_lost;
-      line("hovers for", duration(at.time), minutes(at.time));
-      line("  to a charge of", charge(at.charge));
-      line("  terminal voltage", readable(at.terminal_voltage, "V"),
-           fmt::format("{} without load", readable(at.open_circuit_voltage, "V")));
-      line("  mean current", readable(at.battery_current, "A"));
-      line("  flapping frequency", readable(at.metrics[Metric::frequency], "Hz"));
+      const EnduranceRow& lost = *result.hover_lost;
+      line("hovers for", duration(lost.time), minutes(lost.time));
+      line("  to a charge of", charge(lost.charge));
+      line("  terminal voltage", readable(lost.terminal_voltage, "V"),
+           fmt::format("{} without load", readable(lost.open_circuit_voltage, "V")));
+      line("  mean current", readable(lost.battery_current, "A"));
+      line("  flapping frequency", readable(lost.metrics[Metric::frequency], "Hz"));
       break;
     }
   }
@@ -317,12 +317,12 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   const double weight = total_mass(design).value_or(absent) * standard_gravity;
   const bool in_minutes = result.endurance() >= 120.0;
   const double time_scale = in_minutes ? 1.0 / 60.0 : 1.0;
-  double lift_most = weighed ? weight : 0.0, power_most = 0.0;
+  double max_lift = weighed ? weight : 0.0, max_power = 0.0;
   for (const EnduranceRow& r : rows) {
-    lift_most = std::max(lift_most, r.metrics[Metric::lift_mean]);
-    power_most = std::max(power_most, r.metrics[Metric::power_electrical]);
+    max_lift = std::max(max_lift, r.metrics[Metric::lift_mean]);
+    max_power = std::max(max_power, r.metrics[Metric::power_electrical]);
   }
-  const bool lift_in_newton = lift_most >= 1.0, power_in_watt = power_most >= 1.0;
+  const bool lift_in_newton = max_lift >= 1.0, power_in_watt = max_power >= 1.0;
   const double lift_scale = lift_in_newton ? 1.0 : 1e3, power_scale = power_in_watt ? 1.0 : 1e3;
 
   Figure figure(format, 5.6);
@@ -340,13 +340,13 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   figure.add("set lmargin at screen {}\nset rmargin at screen {}\n", left, right);
   page_title(figure, plot_title(result), 0.1);
   double key_height = 0.0;
-  const auto panel = [&](int index, const std::string& name, double most) {
+  const auto panel = [&](int index, const std::string& name, double highest) {
     if (index > 0) figure.next_panel();
     const double panel_top = top - index * (height + gap);
     key_height = panel_top + 0.014;
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", panel_top, panel_top - height);
     figure.add("set format x {}\n{}", index == 3 ? "'%g'" : "''",
-               AxisMarks(0.0, 1.06 * most, height * figure.height(), true, false).commands("y"));
+               AxisMarks(0.0, 1.06 * highest, height * figure.height(), true, false).commands("y"));
     figure.text(name, 7.5,
                 fmt::format("screen {},{} center rotate by 90", left - 0.435 / format.width, panel_top - 0.5 * height));
     for (std::size_t n = 0; n + 1 < rows.size(); ++n) {
@@ -358,12 +358,12 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
     }
     // Loss of hover runs through all panels.
     if (result.hover_lost) {
-      const double at = time_scale * result.hover_lost->time;
-      figure.add("set arrow 90 from {0},graph 0 to {0},graph 1 nohead front dt (3,3) lw 0.8 lc rgb '#404040'\n", at);
+      const double time = time_scale * result.hover_lost->time;
+      figure.add("set arrow 90 from {0},graph 0 to {0},graph 1 nohead front dt (3,3) lw 0.8 lc rgb '#404040'\n", time);
     }
   };
 
-  panel(0, fmt::format("lift ({})", lift_in_newton ? "N" : "mN"), lift_scale * lift_most);
+  panel(0, fmt::format("lift ({})", lift_in_newton ? "N" : "mN"), lift_scale * max_lift);
   figure.key_entry(left, key_height, style::first_curve, "mean lift");
   if (weighed) {
     figure.key_entry(left + 0.22, key_height, style::reference_line,
@@ -374,7 +374,7 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   if (weighed) figure.add(", {} with lines {}", lift_scale * weight, style::reference_line);
   figure.add("\n");
 
-  panel(1, power_in_watt ? "power (W)" : "power (mW)", power_scale * power_most);
+  panel(1, power_in_watt ? "power (W)" : "power (mW)", power_scale * max_power);
   figure.key_entry(left, key_height, style::first_curve, "electrical");
   figure.key_entry(left + 0.22, key_height, style::stroke(style::aerodynamic), "aerodynamic");
   figure.add("plot $flight using 1:3 with lines {}, '' using 1:4 with lines {}\n", style::first_curve,

@@ -50,10 +50,10 @@ void axis_title(Figure& figure, const std::string& text, double size, double roo
 std::vector<std::string> remark_lines(const std::string& all, double page_width) {
   const double room = page_width - 3.0 * page_margin;
   std::vector<std::string> lines;
-  for (std::size_t at = 0; at < all.size();) {
-    const std::size_t end = std::min(all.find("; ", at), all.size());
-    const std::string remark = all.substr(at, end - at);
-    at = std::min(all.size(), end + 2);
+  for (std::size_t position = 0; position < all.size();) {
+    const std::size_t end = std::min(all.find("; ", position), all.size());
+    const std::string remark = all.substr(position, end - position);
+    position = std::min(all.size(), end + 2);
     const std::string joined = lines.empty() ? remark : lines.back() + "; " + remark;
     if (!lines.empty() && text_width(joined, style::text_size) <= room) {
       lines.back() = joined;
@@ -125,28 +125,28 @@ AxisMarks::AxisMarks(double lowest, double highest, double length, bool upright,
   for (int attempt = 0; attempt < 20; ++attempt) {
     low = rounded ? step * std::floor(first_low / step + 1e-9) : first_low;
     high = rounded ? step * std::ceil(first_high / step - 1e-9) : first_high;
-    at.clear();
+    positions.clear();
     labels.clear();
     for (double k = std::ceil(low / step - 1e-6); k * step <= high + 1e-6 * step; ++k) {
-      at.push_back(k * step);
+      positions.push_back(k * step);
       labels.push_back(mark_label(k * step, step));
     }
     const double pitch = length * step / (high - low);
-    if (pitch >= (upright ? 0.8 * upright_pitch : widest() + gap) || at.size() < 3) break;
+    if (pitch >= (upright ? 0.8 * upright_pitch : widest() + gap) || positions.size() < 3) break;
     step = round_step(1.01 * step);
   }
 }
 
 double AxisMarks::widest() const {
-  double most = 0.0;
-  for (const std::string& label : labels) most = std::max(most, text_width(label, mark_size));
-  return most;
+  double width = 0.0;
+  for (const std::string& label : labels) width = std::max(width, text_width(label, mark_size));
+  return width;
 }
 
 std::string AxisMarks::commands(const char* axis, bool labelled) const {
   std::string marks;
-  for (std::size_t n = 0; n < at.size(); ++n) {
-    marks += fmt::format("{}'{}' {}", n == 0 ? "" : ",", labelled ? labels[n] : "", at[n]);
+  for (std::size_t n = 0; n < positions.size(); ++n) {
+    marks += fmt::format("{}'{}' {}", n == 0 ? "" : ",", labelled ? labels[n] : "", positions[n]);
   }
   return fmt::format("set {0}range [{1}:{2}]\nset {0}tics ({3})\n", axis, low, high, marks);
 }

@@ -59,7 +59,7 @@ class Key {
 /// Numbers at which an axis is marked, as far apart as their labels need.
 struct AxisMarks {
   double low = 0.0, high = 1.0;  ///< the axis, whose ends `rounded` takes to marks
-  std::vector<double> at;
+  std::vector<double> positions;
   std::vector<std::string> labels;
 
   /// Of an axis `length` [in] long. `upright` is true of vertical axes.

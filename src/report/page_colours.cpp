@@ -42,8 +42,8 @@ constexpr PageColour page_colours[] = {{"#ffffff", "paper", "#181b1f"},
                                        {"#b00000", "limit", "#ff8a7a"}};
 
 void replace_in(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
+  for (std::size_t position = 0; (position = text.find(from, position)) != std::string::npos; position += to.size())
+    text.replace(position, from.size(), to);
 }
 
 }  // namespace

@@ -36,8 +36,8 @@ std::vector<const DesignParameter*> parameters_of(const ParetoStudy& study) {
 std::string hypervolume_unit(const ParetoStudy& study) {
   std::string unit;
   for (const ParetoObjective& o : study.objectives) {
-    const std::string_view of = metric_info(o.metric).unit;
-    if (of != "1") unit += fmt::format("{}{}", unit.empty() ? "" : " ", of);
+    const std::string_view factor = metric_info(o.metric).unit;
+    if (factor != "1") unit += fmt::format("{}{}", unit.empty() ? "" : " ", factor);
   }
   return unit.empty() ? "1" : unit;
 }
@@ -234,14 +234,14 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
                           .condition = name_of(study.condition),
                           .method = algorithm_of(study.evolution.method)});
   const auto parameters = parameters_of(study);
-  const auto designs = [&](const std::string& dimension, const std::string& prefix, const char* of,
+  const auto designs = [&](const std::string& dimension, const std::string& prefix, const char* role,
                            std::span<const ParetoDesign> list, const MetricSet& metrics) {
     const auto along = data.define_dimension(dimension, list.size());
     std::vector<double> values(list.size());
     const auto column = [&](const std::string& name, std::string_view unit, const std::string& meaning,
                             const auto& value) {
       std::transform(list.begin(), list.end(), values.begin(), value);
-      const auto variable = data.define_variable(prefix + name, {along}, std::string(unit), meaning + of);
+      const auto variable = data.define_variable(prefix + name, {along}, std::string(unit), meaning + role);
       data.write(variable, values);
       return variable;
     };
@@ -259,7 +259,7 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
              [m](const ParetoDesign& d) { return d.metrics.values[m]; });
     }
     const auto domain = data.define_dense(prefix + "domain", {along}, "1",
-                                          std::string("limits of the model's domain that are exceeded") + of,
+                                          std::string("limits of the model's domain that are exceeded") + role,
                                           NetcdfFile::Storage::masks);
     std::vector<std::string> limits;
     for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
@@ -270,7 +270,7 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
     if (study.vehicles.size() > 1) {
       std::vector<std::string> names;
       for (const ParetoDesign& d : list) names.push_back(study.vehicles[d.vehicle].name);
-      data.define_texts(prefix + "motor", along, names, std::string("motor of the catalogue") + of);
+      data.define_texts(prefix + "motor", along, names, std::string("motor of the catalogue") + role);
     }
     return along;
   };

@@ -31,24 +31,24 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
   // Times in a unit that leaves readable numbers.
   const bool in_seconds = period >= 10.0;
   const double time_scale = in_seconds ? 1.0 : 1e3;
-  double lift_mean = 0.0, lift_most = 0.0, power_most = 0.0;
+  double lift_mean = 0.0, max_lift = 0.0, max_power = 0.0;
   StrokeRange stroke{rows.front().stroke_angle, rows.front().stroke_angle};
   for (std::size_t k = 0; k < rows.size(); ++k) {
     if (k > 0) lift_mean += 0.5 * (rows[k].lift + rows[k - 1].lift) * (rows[k].time - rows[k - 1].time) / period;
     stroke = {std::min(stroke.low, rows[k].stroke_angle), std::max(stroke.high, rows[k].stroke_angle)};
-    lift_most = std::max(lift_most, std::abs(rows[k].lift));
-    power_most = std::max(power_most, std::abs(rows[k].power_electrical));
+    max_lift = std::max(max_lift, std::abs(rows[k].lift));
+    max_power = std::max(max_power, std::abs(rows[k].power_electrical));
   }
-  const bool lift_in_newton = lift_most >= 1.0, power_in_watt = power_most >= 10.0;
+  const bool lift_in_newton = max_lift >= 1.0, power_in_watt = max_power >= 10.0;
   const double lift_scale = lift_in_newton ? 1.0 : 1e3, power_scale = power_in_watt ? 1.0 : 1e3;
 
   // Without a rod its panel shows the current.
   const bool rod = std::isfinite(rows.front().rod_force);
   const auto force_or_current = [&](const WaveformRow& r) { return rod ? r.rod_force : r.current; };
-  double force_most = 0.0;
-  for (const WaveformRow& r : rows) force_most = std::max(force_most, std::abs(force_or_current(r)));
-  const double force_scale = force_most >= 1.0 ? 1.0 : 1e3;
-  const char* const force_unit = force_most >= 1.0 ? (rod ? "N" : "A") : (rod ? "mN" : "mA");
+  double max_force = 0.0;
+  for (const WaveformRow& r : rows) max_force = std::max(max_force, std::abs(force_or_current(r)));
+  const double force_scale = max_force >= 1.0 ? 1.0 : 1e3;
+  const char* const force_unit = max_force >= 1.0 ? (rod ? "N" : "A") : (rod ? "mN" : "mA");
   const Vehicle<double> vehicle = resolve(design);
   const std::string force = internal_force_name(vehicle.transmission.type);
 
@@ -192,21 +192,21 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
   for (const Part& part : parts) named.push_back(fill_key(part.name, part.fill));
   const Key key(std::move(named), 0.94 * format.width);
 
-  double most = 0.0;
-  for (const PowerBar& bar : bars) most = std::max(most, bar.audit.electrical);
-  if (!(most > 0.0)) throw std::runtime_error("no power breakdown to plot: no electrical input");
-  const bool in_watt = most >= 10.0;
+  double max_power = 0.0;
+  for (const PowerBar& bar : bars) max_power = std::max(max_power, bar.audit.electrical);
+  if (!(max_power > 0.0)) throw std::runtime_error("no power breakdown to plot: no electrical input");
+  const bool in_watt = max_power >= 10.0;
   const double scale = in_watt ? 1.0 : 1e3;
   const char* unit = in_watt ? "W" : "mW";
 
-  const int decimals = scale * most >= 1000.0 ? 0 : scale * most >= 100.0 ? 1 : 2;
+  const int decimals = scale * max_power >= 1000.0 ? 0 : scale * max_power >= 100.0 ? 1 : 2;
   const auto shown = [&](double power) { return fmt::format("{:.{}f}", power, decimals); };
 
   const double count = double(bars.size());
   const double above = 0.23 + key.height(), inches = above + 0.53 + 0.58 * count;
   Figure figure(format, inches);
   figure.add("set border 1\nunset ytics\nset grid noy\n");
-  const double longest = scale * most;
+  const double longest = scale * max_power;
   const double span = 1.2 * longest;
   double least = 0.0;
   for (std::size_t b = 0; b < bars.size(); ++b) {
@@ -214,7 +214,7 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
     const double y = count - 1.0 - double(b);
     double right = 0.0, left = 0.0;
     struct Narrow {
-      double at;
+      double x;
       const char* fill;
       std::string text;
     };
@@ -242,14 +242,14 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
       }
     }
     // What has no room inside stands above, with the part's colour, pushed aside by its neighbours.
-    std::sort(narrow.begin(), narrow.end(), [](const Narrow& p, const Narrow& q) { return p.at < q.at; });
+    std::sort(narrow.begin(), narrow.end(), [](const Narrow& p, const Narrow& q) { return p.x < q.x; });
     const double room = 0.215 * span * single_column_width / format.width;
     double limit = least + 0.5 * room;
-    for (Narrow& n : narrow) limit = (n.at = std::max(n.at, limit)) + room;
+    for (Narrow& n : narrow) limit = (n.x = std::max(n.x, limit)) + room;
     limit = span - 0.5 * room;
-    for (auto n = narrow.rbegin(); n != narrow.rend(); ++n) limit = (n->at = std::min(n->at, limit)) - room;
+    for (auto n = narrow.rbegin(); n != narrow.rend(); ++n) limit = (n->x = std::min(n->x, limit)) - room;
     for (const Narrow& n : narrow) {
-      const double start = n.at - 0.45 * room;
+      const double start = n.x - 0.45 * room;
       figure.box(fmt::format("from {},{} to {},{}", start, y + 0.2, start + 0.085 * room, y + 0.27), n.fill);
       figure.text(n.text, style::text_size, fmt::format("{},{} left", start + 0.115 * room, y + 0.235));
     }

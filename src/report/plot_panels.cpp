@@ -17,11 +17,11 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
                  const std::filesystem::path& file) {
   if (panels.empty()) throw std::runtime_error("nothing to plot");
   std::vector<std::string> names;
-  double most = axes.y_least;
+  double highest = axes.y_least;
   for (const PointPanel& panel : panels) {
     for (const PointSeries& s : panel.series) {
       if (std::find(names.begin(), names.end(), s.name) == names.end()) names.push_back(s.name);
-      for (const auto& [x, y] : s.points) most = std::max(most, std::abs(y));
+      for (const auto& [x, y] : s.points) highest = std::max(highest, std::abs(y));
     }
   }
   // The shapes tell quantities apart.
@@ -51,7 +51,7 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
   figure.add(
       "set multiplot\nset lmargin at screen {}\nset rmargin at screen {}\nset offsets graph 0.04, graph 0.04, 0, 0\n",
       left, right);
-  figure.add("set yrange [-{0}:{0}]\nset ytics autofreq\n", 1.08 * most);
+  figure.add("set yrange [-{0}:{0}]\nset ytics autofreq\n", 1.08 * highest);
   for (std::size_t p = 0; p < panels.size(); ++p) {
     if (p > 0) figure.next_panel();
     const double top = 1.0 - (head + gap + (each + gap) * double(p)) / inches;

@@ -58,7 +58,7 @@ panels.forEach(panel => {
       if (k === lines.length) line.className = 'note';
       return line;
     }));
-    const at = svg.getScreenCTM(), px = at.a * x[index] + at.e, py = at.d * y[index] + at.f;
+    const matrix = svg.getScreenCTM(), px = matrix.a * x[index] + matrix.e, py = matrix.d * y[index] + matrix.f;
     const beside = px + 18 + tip.offsetWidth < innerWidth ? px + 18 : px - 18 - tip.offsetWidth;
     tip.style.left = Math.max(4, beside) + 'px';
     tip.style.top = Math.max(4, Math.min(py + 14, innerHeight - tip.offsetHeight - 6)) + 'px';
@@ -76,7 +76,8 @@ panels.forEach(panel => {
                              role: 'application', 'aria-label': panel.name + ': arrow keys go from design to design'});
   if (!x.length) return;
   area.addEventListener('pointermove', event => {
-    const at = svg.getScreenCTM(), px = (event.clientX - at.e) / at.a, py = (event.clientY - at.f) / at.d;
+    const matrix = svg.getScreenCTM();
+    const px = (event.clientX - matrix.e) / matrix.a, py = (event.clientY - matrix.f) / matrix.d;
     show(nearest(n => Math.abs(x[n] - px) ** 2 + (flat ? 0 : Math.abs(y[n] - py) ** 2)));
   });
   area.addEventListener('pointerleave', hide);
@@ -107,7 +108,7 @@ panels.forEach(panel => {
 });
 )";
 
-/// To five digits of the point's place, four of its numbers: what can be told apart, and no more in the file.
+/// To five digits of the point's place, four of its numbers: what can be distinguished, and no more in the file.
 double read_out_digits(double value, int digits) {
   return std::strtod(fmt::format("{:.{}g}", value, digits).c_str(), nullptr);
 }
@@ -162,7 +163,8 @@ std::string read_out_page(std::string svg, const Figure& figure, const std::stri
   }
   // Within a script "</" would end it.
   std::string data = points.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
-  for (std::size_t at = 0; (at = data.find("</", at)) != std::string::npos; at += 3) data.replace(at, 2, "<\\/");
+  for (std::size_t position = 0; (position = data.find("</", position)) != std::string::npos; position += 3)
+    data.replace(position, 2, "<\\/");
   return fmt::format(
       "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><meta name=\"viewport\" "
       "content=\"width=device-width, initial-scale=1\">\n<title>{0}</title>\n<link rel=\"icon\" href=\"data:,\">\n"

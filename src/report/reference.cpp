@@ -296,11 +296,11 @@ std::string vehicle_file_reference() {
 
 std::string metric_reference() {
   std::string result = "\n| key | unit | symbol | definition |\n| --- | --- | --- | --- |\n";
-  for (const MetricDefinition& of : metric_definitions) {
-    const MetricInfo& metric = metric_info(of.metric);
-    const std::string_view definition = of.definition;
+  for (const MetricDefinition& described : metric_definitions) {
+    const MetricInfo& metric = metric_info(described.metric);
+    const std::string_view definition = described.definition;
     result += fmt::format("| `{}` | {} | {} | {}{}{} |\n", metric.key,
-                          std::string_view(metric.unit) == "1" ? "-" : metric.unit, of.symbol, metric.long_name,
+                          std::string_view(metric.unit) == "1" ? "-" : metric.unit, described.symbol, metric.long_name,
                           definition.empty() ? "" : ": ", definition);
   }
   return result;

@@ -166,10 +166,10 @@ std::string wrapped(std::string_view text, int width, int indent) {
   };
   std::string out;
   int column = 0;
-  for (std::size_t at = 0; at < text.size();) {
-    std::size_t end = at;
+  for (std::size_t position = 0; position < text.size();) {
+    std::size_t end = position;
     while (end < text.size() && static_cast<unsigned char>(text[end]) > 0x20 && text[end] != 0x7F) ++end;
-    const std::string word = detail::printable(text.substr(at, end - at));
+    const std::string word = detail::printable(text.substr(position, end - position));
     if (!word.empty()) {
       if (column > 0 && column + 1 + columns(word) > width) {
         out += '\n' + std::string(std::size_t(indent), ' ');
@@ -181,7 +181,7 @@ std::string wrapped(std::string_view text, int width, int indent) {
       out += word;
       column += columns(word);
     }
-    at = end + 1;
+    position = end + 1;
   }
   return out;
 }

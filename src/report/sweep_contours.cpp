@@ -16,16 +16,16 @@ namespace wingbeat {
 namespace {
 
 /// Round numbers, about nine steps apart, that enclose both.
-std::vector<double> levels_between(double least, double most) {
-  if (!(most > least)) most = least + std::max(std::abs(least), 1.0) * 1e-3;
-  const double rough = (most - least) / 9.0;
+std::vector<double> levels_between(double least, double highest) {
+  if (!(highest > least)) highest = least + std::max(std::abs(least), 1.0) * 1e-3;
+  const double rough = (highest - least) / 9.0;
   const double decade = std::pow(10.0, std::floor(std::log10(rough)));
   double step = 10.0 * decade;
   for (const double nice : {5.0, 2.5, 2.0, 1.0}) {
     if (nice * decade >= 0.999 * rough) step = nice * decade;
   }
   std::vector<double> levels;
-  for (double k = std::floor(least / step); k * step < most + 0.999 * step; ++k) levels.push_back(k * step);
+  for (double k = std::floor(least / step); k * step < highest + 0.999 * step; ++k) levels.push_back(k * step);
   return levels;
 }
 
@@ -33,9 +33,9 @@ std::vector<double> levels_between(double least, double most) {
 std::string colour(double share) {
   constexpr std::array<std::array<double, 3>, 5> points = {
       {{68, 1, 84}, {59, 82, 139}, {33, 145, 140}, {94, 201, 98}, {253, 231, 37}}};
-  const double at = std::clamp(share, 0.0, 1.0) * 4.0;
-  const std::size_t k = std::min<std::size_t>(3, std::size_t(at));
-  const double t = at - double(k);
+  const double position = std::clamp(share, 0.0, 1.0) * 4.0;
+  const std::size_t k = std::min<std::size_t>(3, std::size_t(position));
+  const double t = position - double(k);
   int rgb[3];
   for (std::size_t c = 0; c < 3; ++c) rgb[c] = int(std::lround((1.0 - t) * points[k][c] + t * points[k + 1][c]));
   return fmt::format("#{:02x}{:02x}{:02x}", rgb[0], rgb[1], rgb[2]);
@@ -50,11 +50,11 @@ struct Arrangement {
 /// The designs of a panel for its read-out, of very many every few.
 ReadOutPanel contour_points(const Scale& x, const Scale& y, const Field& field, const std::vector<double>& status,
                             const std::vector<double>& domain) {
-  constexpr std::size_t most = 150;  // along an axis
-  const std::size_t nx = x.at.size(), ny = y.at.size();
-  const std::size_t every_x = (nx + most - 1) / most, every_y = (ny + most - 1) / most;
-  const auto [x_low, x_high] = std::minmax_element(x.at.begin(), x.at.end());
-  const auto [y_low, y_high] = std::minmax_element(y.at.begin(), y.at.end());
+  constexpr std::size_t max_points = 150;  // along an axis
+  const std::size_t nx = x.values.size(), ny = y.values.size();
+  const std::size_t every_x = (nx + max_points - 1) / max_points, every_y = (ny + max_points - 1) / max_points;
+  const auto [x_low, x_high] = std::minmax_element(x.values.begin(), x.values.end());
+  const auto [y_low, y_high] = std::minmax_element(y.values.begin(), y.values.end());
   ReadOutPanel panel{};
   panel.name = field.label();
   panel.columns = {{x.name, x.display.unit, {}},
@@ -63,10 +63,10 @@ ReadOutPanel contour_points(const Scale& x, const Scale& y, const Field& field, 
   for (std::size_t i = 0; i < nx; i += every_x) {
     for (std::size_t j = 0; j < ny; j += every_y) {
       const std::size_t n = i * ny + j;
-      panel.x.push_back(share_of_axis(x.at[i], *x_low, *x_high, x.logarithmic));
-      panel.y.push_back(share_of_axis(y.at[j], *y_low, *y_high, y.logarithmic));
-      panel.columns[0].values.push_back(x.at[i]);
-      panel.columns[1].values.push_back(y.at[j]);
+      panel.x.push_back(share_of_axis(x.values[i], *x_low, *x_high, x.logarithmic));
+      panel.y.push_back(share_of_axis(y.values[j], *y_low, *y_high, y.logarithmic));
+      panel.columns[0].values.push_back(x.values[i]);
+      panel.columns[1].values.push_back(y.values[j]);
       panel.columns[2].values.push_back(field.values[n]);
       panel.notes.push_back(design_note(int(status[n]), unsigned(domain[n])));
     }
@@ -90,15 +90,15 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
     if (!makes_curves(study.sweep, axis)) axes.push_back(&axis);
   }
   const Scale x(*axes[0]), y(*axes[1]);
-  const std::size_t ny = y.at.size();
-  const Arrangement order{growing(x.at), growing(y.at)};
-  Grid base;
-  for (const std::size_t i : order.x) base.x.push_back(x.at[i]);
-  for (const std::size_t j : order.y) base.y.push_back(y.at[j]);
+  const std::size_t ny = y.values.size();
+  const Arrangement order{growing(x.values), growing(y.values)};
+  ContourGrid base;
+  for (const std::size_t i : order.x) base.x.push_back(x.values[i]);
+  for (const std::size_t j : order.y) base.y.push_back(y.values[j]);
   base.log_x = x.logarithmic;
   base.log_y = y.logarithmic;
   const auto gridded = [&](const auto& value_at) {
-    Grid grid = base;
+    ContourGrid grid = base;
     for (std::size_t i = 0; i < order.x.size(); ++i) {
       for (std::size_t j = 0; j < order.y.size(); ++j) grid.z.push_back(value_at(order.index(i, j, ny)));
     }
@@ -130,18 +130,18 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
   const double inches = head + double(metrics.size()) * panel + double(metrics.size() - 1) * gap + foot;
   Figure figure(format, inches);
   constexpr double left = 0.135, right = 0.83;
-  Grid idle = gridded([&](std::size_t n) { return flaps(n) ? 0.0 : 1.0; });
+  ContourGrid idle = gridded([&](std::size_t n) { return flaps(n) ? 0.0 : 1.0; });
   smooth(idle);
   add_filled(figure, "idle", boundaries(idle, 0.5));
   add_outline(figure, "idle_outline", base, boundaries(idle, 0.5));
   if (leaves) {
-    Grid beyond = gridded([&](std::size_t n) { return outside(n) ? 1.0 : 0.0; });
+    ContourGrid beyond = gridded([&](std::size_t n) { return outside(n) ? 1.0 : 0.0; });
     smooth(beyond);
     add_filled(figure, "outside", boundaries(beyond, 0.5));
     add_outline(figure, "outside_outline", base, boundaries(beyond, 0.5));
   }
   if (carried) {
-    const Grid lifted = gridded([&](std::size_t n) { return flaps(n) ? weight[n] : 0.0; });
+    const ContourGrid lifted = gridded([&](std::size_t n) { return flaps(n) ? weight[n] : 0.0; });
     add_outline(figure, "feasible", base, boundaries(lifted, 1.0));
   }
 
@@ -153,11 +153,11 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
     if (p > 0) figure.next_panel();
     figure.add("unset object\n");
     const Field field(file, metrics[p]);
-    double least = std::numeric_limits<double>::infinity(), most = -least;
+    double least = std::numeric_limits<double>::infinity(), highest = -least;
     for (const double value : field.values) {
       if (!std::isfinite(value)) continue;
       least = std::min(least, value);
-      most = std::max(most, value);
+      highest = std::max(highest, value);
     }
     const SweepBest found = best_of(field, weight, domain, extrapolates);
     const std::size_t best = found.design() ? std::size_t(found.design()->index) : status.size();
@@ -173,8 +173,8 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
 
     std::string drawn;
     if (std::isfinite(least)) {
-      const std::vector<double> levels = levels_between(least, most);
-      Grid grid = gridded([&](std::size_t n) { return field.values[n]; });
+      const std::vector<double> levels = levels_between(least, highest);
+      ContourGrid grid = gridded([&](std::size_t n) { return field.values[n]; });
       extend(grid);
       const std::size_t bands = levels.size() - 1;
       const auto shade = [&](std::size_t band) { return colour(bands > 1 ? double(band) / double(bands - 1) : 0.5); };
@@ -191,10 +191,10 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
       }
       const std::size_t every = bands > 8 ? 2 : 1;
       for (std::size_t k = 0; k < levels.size(); k += every) {
-        const double at = bottom + (top - bottom) * double(k) / double(bands);
+        const double height_on_page = bottom + (top - bottom) * double(k) / double(bands);
         const double start = (right + 0.068) * format.width;
-        fitted_text(figure, fmt::format("{:.6g}", std::abs(levels[k]) < 1e-9 * (most - least) ? 0.0 : levels[k]),
-                    style::text_size, format.width - start - 0.02, start, (1.0 - at) * inches, "left");
+        fitted_text(figure, fmt::format("{:.6g}", std::abs(levels[k]) < 1e-9 * (highest - least) ? 0.0 : levels[k]),
+                    style::text_size, format.width - start - 0.02, start, (1.0 - height_on_page) * inches, "left");
       }
     }
     drawn +=
@@ -220,8 +220,10 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
       }
     }
     if (best < status.size()) {
-      figure.circle(x.at[best / ny], y.at[best % ny], 0.012, "fillcolor rgb '#ffffff' fillstyle solid", "#000000");
-      figure.circle(x.at[best / ny], y.at[best % ny], 0.003, "fillcolor rgb '#000000' fillstyle solid", "#000000");
+      figure.circle(x.values[best / ny], y.values[best % ny], 0.012, "fillcolor rgb '#ffffff' fillstyle solid",
+                    "#000000");
+      figure.circle(x.values[best / ny], y.values[best % ny], 0.003, "fillcolor rgb '#000000' fillstyle solid",
+                    "#000000");
       const std::string found_at = fmt::format("circle: {} {} at {}, {}", field.superlative(),
                                                field.shown(field.values[best]), x.value(best / ny), y.value(best % ny));
       fitted_text(figure, found_at, style::text_size, (right - 0.02) * format.width, right * format.width,

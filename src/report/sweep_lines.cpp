@@ -97,15 +97,15 @@ ReadOutPanel line_points(const Scale& x, const std::vector<std::size_t>& order, 
     panel.columns.push_back({name_of_curve(c), field.display.unit, {}});
   }
   for (const std::size_t n : order) {
-    panel.x.push_back(share_of_axis(x.at[n], x.at[order.front()], x.at[order.back()], x.logarithmic));
-    panel.columns[0].values.push_back(x.at[n]);
+    panel.x.push_back(share_of_axis(x.values[n], x.values[order.front()], x.values[order.back()], x.logarithmic));
+    panel.columns[0].values.push_back(x.values[n]);
     std::string beyond;
     for (std::size_t c = 0; c < curves.first.size(); ++c) {
-      const std::size_t at = curves.first[c] + n * curves.stride;
-      panel.columns[c + 1].values.push_back(field.values[at]);
-      if (domain[at] == 0.0) continue;
+      const std::size_t design = curves.first[c] + n * curves.stride;
+      panel.columns[c + 1].values.push_back(field.values[design]);
+      if (domain[design] == 0.0) continue;
       const std::string name = curves.first.size() > 1 ? name_of_curve(c) + " " : "";
-      beyond += fmt::format("{}{}{}", beyond.empty() ? "" : "; ", name, design_note(0, unsigned(domain[at])));
+      beyond += fmt::format("{}{}{}", beyond.empty() ? "" : "; ", name, design_note(0, unsigned(domain[design])));
     }
     panel.notes.push_back(beyond);
   }
@@ -118,22 +118,22 @@ constexpr const char* outside_band = "#d0d0d0";
 /// value and whether it is outside.
 template <class At>
 void add_outside(Figure& figure, const std::string& name, const Scale& x, const std::vector<std::size_t>& order,
-                 const At& at) {
-  figure.add("{} << END\n{} NaN\n", name, x.at[order.front()]);
+                 const At& point_at) {
+  figure.add("{} << END\n{} NaN\n", name, x.values[order.front()]);
   const auto halfway = [&](std::size_t k, std::size_t next) {
-    const double a = x.at[order[k]], b = x.at[order[next]];
-    const auto [value, out] = at(order[next]);
+    const double a = x.values[order[k]], b = x.values[order[next]];
+    const auto [value, out] = point_at(order[next]);
     if (!std::isfinite(value) || out) return;
-    figure.add("{} {}\n", x.logarithmic ? std::sqrt(a * b) : 0.5 * (a + b), 0.5 * (at(order[k]).first + value));
+    figure.add("{} {}\n", x.logarithmic ? std::sqrt(a * b) : 0.5 * (a + b), 0.5 * (point_at(order[k]).first + value));
   };
   for (std::size_t k = 0; k < order.size(); ++k) {
-    const auto [value, out] = at(order[k]);
+    const auto [value, out] = point_at(order[k]);
     if (!out || !std::isfinite(value)) {
-      figure.add("{} NaN\n", x.at[order[k]]);
+      figure.add("{} NaN\n", x.values[order[k]]);
       continue;
     }
     if (k > 0) halfway(k, k - 1);
-    figure.add("{} {}\n", x.at[order[k]], value);
+    figure.add("{} {}\n", x.values[order[k]], value);
     if (k + 1 < order.size()) halfway(k, k + 1);
   }
   figure.add("END\n");
@@ -143,29 +143,29 @@ void add_outside(Figure& figure, const std::string& name, const Scale& x, const 
 
 void plot_idle_lines(const Study& study, const std::vector<double>& status, PlotFormat format,
                      const std::filesystem::path& output) {
-  const Curves of(study.sweep);
-  const Scale x(study.sweep.axes[of.along]);
+  const Curves layout(study.sweep);
+  const Scale x(study.sweep.axes[layout.along]);
   std::vector<StatusCurve> curves;
-  for (const std::uint64_t first : of.first) {
+  for (const std::uint64_t first : layout.first) {
     StatusCurve curve{curve_name(study.sweep, first), {}};
-    for (std::size_t n = 0; n < x.at.size(); ++n) curve.status.push_back(int(status[first + n * of.stride]));
+    for (std::size_t n = 0; n < x.values.size(); ++n) curve.status.push_back(int(status[first + n * layout.stride]));
     curves.push_back(std::move(curve));
   }
-  plot_statuses(title_of(study), x.label(), x.range("x"), x.at, curves, format, output);
+  plot_statuses(title_of(study), x.label(), x.range("x"), x.values, curves, format, output);
 }
 
 void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Metric> metrics, PlotFormat format,
                 const std::filesystem::path& output) {
   const Sweep& sweep = study.sweep;
-  const Curves of(sweep);
-  const std::size_t along = of.along;
-  const std::uint64_t stride = of.stride;
-  const std::vector<std::uint64_t>& curves = of.first;
+  const Curves layout(sweep);
+  const std::size_t along = layout.along;
+  const std::uint64_t stride = layout.stride;
+  const std::vector<std::uint64_t>& curves = layout.first;
   const Scale x(sweep.axes[along]);
-  const std::size_t count = x.at.size();
+  const std::size_t count = x.values.size();
   std::vector<std::size_t> order(count);
   for (std::size_t n = 0; n < count; ++n) order[n] = n;
-  std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return x.at[p] < x.at[q]; });
+  std::sort(order.begin(), order.end(), [&](std::size_t p, std::size_t q) { return x.values[p] < x.values[q]; });
 
   std::vector<CurveLook> looks;
   for (const std::uint64_t curve : curves) looks.push_back(look_of(sweep, curve));
@@ -200,22 +200,22 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
       figure.add("$curve_{}_{} << END\n", p, c);
       for (const std::size_t n : order) {
         const double y = field.values[curves[c] + n * stride];
-        if (std::isfinite(y)) figure.add("{} {}\n", x.at[n], y);
-        else figure.add("{} NaN\n", x.at[n]);
+        if (std::isfinite(y)) figure.add("{} {}\n", x.values[n], y);
+        else figure.add("{} NaN\n", x.values[n]);
       }
       figure.add("END\n");
       add_outside(figure, fmt::format("$outside_{}_{}", p, c), x, order, [&](std::size_t n) {
-        const std::size_t at = curves[c] + n * stride;
-        return std::pair{field.values[at], domain[at] != 0.0};
+        const std::size_t design = curves[c] + n * stride;
+        return std::pair{field.values[design], domain[design] != 0.0};
       });
       // A design that flaps between two that do not would leave no line.
-      figure.add("$lone_{}_{} << END\n{} NaN\n", p, c, x.at[order.front()]);
+      figure.add("$lone_{}_{} << END\n{} NaN\n", p, c, x.values[order.front()]);
       for (std::size_t k = 0; k < count; ++k) {
         const auto flaps = [&](std::size_t j) {
           return j < count && std::isfinite(field.values[curves[c] + order[j] * stride]);
         };
         if (flaps(k) && !flaps(k - 1) && !flaps(k + 1)) {
-          figure.add("{} {}\n", x.at[order[k]], field.values[curves[c] + order[k] * stride]);
+          figure.add("{} {}\n", x.values[order[k]], field.values[curves[c] + order[k] * stride]);
         }
       }
       figure.add("END\n");
@@ -235,7 +235,7 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
                p + 1 == metrics.size() ? "'%g'" : "''");
     figure.text(field.label(), 7.5, fmt::format("screen {},{} left", left, top + 0.22 / inches));
     if (format == PlotFormat::html) {
-      pages.push_back(line_points(x, order, field, domain, of, [&](std::size_t c) {
+      pages.push_back(line_points(x, order, field, domain, layout, [&](std::size_t c) {
         return curves.size() > 1 ? curve_name(sweep, curves[c]) : metric_info(field.metric).long_name;
       }));
       ReadOutPanel& page = pages.back();
@@ -243,13 +243,14 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
     }
     if (found[p].design()) {
       const std::uint64_t best = found[p].design()->index;
-      const std::size_t at = std::size_t(places(sweep, best)[along]);
-      const std::uint64_t first = best - at * stride;
+      const std::size_t index = std::size_t(places(sweep, best)[along]);
+      const std::uint64_t first = best - index * stride;
       const std::size_t curve = std::size_t(std::find(curves.begin(), curves.end(), first) - curves.begin());
       fitted_text(
-          figure, fmt::format("circle: {} {} at {}", field.superlative(), field.shown(field.values[best]), x.value(at)),
+          figure,
+          fmt::format("circle: {} {} at {}", field.superlative(), field.shown(field.values[best]), x.value(index)),
           style::text_size, (right - left) * format.width, right * format.width, (1.0 - top) * inches - 0.09, "right");
-      figure.circle(x.at[at], field.values[best], 0.01, "fillstyle empty", looks[curve].colour);
+      figure.circle(x.values[index], field.values[best], 0.01, "fillstyle empty", looks[curve].colour);
     }
     if (p + 1 == metrics.size()) {
       const double below = remarks_height(remarks) + 0.14;
@@ -267,13 +268,13 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
           "{}$curve_{}_{} using 1:2 with lines {}, $lone_{}_{} using 1:2 with points pt 7 ps 0.2 lc rgb '{}'",
           c == 0 ? "" : ", ", p, c, looks[c].line(), p, c, looks[c].colour);
     }
-    double least = INFINITY, most = -INFINITY;
+    double least = INFINITY, highest = -INFINITY;
     for (const double y : field.values) {
       if (!std::isfinite(y)) continue;
       least = std::min(least, y);
-      most = std::max(most, y);
+      highest = std::max(highest, y);
     }
-    const bool from_zero = least >= 0.0 && least < 0.6 * most;
+    const bool from_zero = least >= 0.0 && least < 0.6 * highest;
     figure.add("set yrange [{}:*]\nset offsets 0,0,graph 0.06,0\nplot {}\n", from_zero ? "0" : "*", curves_drawn);
   }
   figure.add("unset multiplot\nunset output\n");

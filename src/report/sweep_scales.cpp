@@ -72,25 +72,25 @@ Scale::Scale(const SweepAxis& axis) {
   for (const double x : q.values) largest = std::max(largest, std::abs(x));
   display = display_for(q.unit, largest);
   logarithmic = q.logarithmic;
-  for (const double x : q.values) at.push_back(display.factor * x);
+  for (const double x : q.values) values.push_back(display.factor * x);
 }
 
 std::string Scale::range(const char* which) const {
-  const auto [least, most] = std::minmax_element(at.begin(), at.end());
-  std::string text =
-      fmt::format("set {0}range [{1}:{2}]\n{3} logscale {0}\n", which, *least, *most, logarithmic ? "set" : "unset");
-  if (!logarithmic || *most > 1000.0 * *least) return text;
+  const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+  std::string text = fmt::format("set {0}range [{1}:{2}]\n{3} logscale {0}\n", which, *lowest, *highest,
+                                 logarithmic ? "set" : "unset");
+  if (!logarithmic || *highest > 1000.0 * *lowest) return text;
   // Over few decades powers of ten alone are too few marks; over more, three a decade would overlap.
-  const std::vector<double> steps = *most > 30.0 * *least ? std::vector{1.0, 3.0} : std::vector{1.0, 2.0, 5.0};
+  const std::vector<double> steps = *highest > 30.0 * *lowest ? std::vector{1.0, 3.0} : std::vector{1.0, 2.0, 5.0};
   std::string marks;
-  for (double decade = std::pow(10.0, std::floor(std::log10(*least))); decade <= *most; decade *= 10.0) {
+  for (double decade = std::pow(10.0, std::floor(std::log10(*lowest))); decade <= *highest; decade *= 10.0) {
     for (const double step : steps) marks += fmt::format("{}{}", marks.empty() ? "" : ",", step * decade);
   }
   return text + fmt::format("set {}tics ({})\n", which, marks);
 }
 
 std::string Scale::value(std::size_t n) const {
-  return fmt::format("{:.4g}{}{}", at[n], display.unit.empty() ? "" : " ", display.unit);
+  return fmt::format("{:.4g}{}{}", values[n], display.unit.empty() ? "" : " ", display.unit);
 }
 
 std::string title_of(const Study& study) {

@@ -39,7 +39,7 @@ struct Scale {
   std::string name;
   Display display;
   bool logarithmic = false;
-  std::vector<double> at;  ///< in the displayed unit
+  std::vector<double> values;  ///< in the displayed unit
 
   explicit Scale(const SweepAxis& axis);
   std::string label() const { return name + display.in_brackets(); }

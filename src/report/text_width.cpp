@@ -41,9 +41,9 @@ double advance(std::uint32_t c) {
 }
 
 /// The bytes of the character that starts there.
-std::size_t character_length(std::string_view text, std::size_t at) {
+std::size_t character_length(std::string_view text, std::size_t position) {
   std::size_t n = 1;
-  while (at + n < text.size() && (static_cast<unsigned char>(text[at + n]) & 0xc0) == 0x80) ++n;
+  while (position + n < text.size() && (static_cast<unsigned char>(text[position + n]) & 0xc0) == 0x80) ++n;
   return n;
 }
 
@@ -72,10 +72,10 @@ std::size_t fitting_length(std::string_view text, double size, double room) {
 
 double text_width(std::string_view utf8, double size) {
   double sum = 0.0;
-  for (std::size_t at = 0; at < utf8.size();) {
-    const std::size_t n = character_length(utf8, at);
-    sum += advance(character(utf8.substr(at, n)));
-    at += n;
+  for (std::size_t position = 0; position < utf8.size();) {
+    const std::size_t n = character_length(utf8, position);
+    sum += advance(character(utf8.substr(position, n)));
+    position += n;
   }
   return sum / em * size / points_per_inch;
 }

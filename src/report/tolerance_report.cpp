@@ -238,11 +238,11 @@ const Description<OutputFound>& output_description() {
       Description<R>()
           .always("mean", "", "of the samples that count; the metric's unit", number(&O::mean))
           .always("deviation", "", "standard deviation", number(&O::deviation))
-          .always("least", "", "", number(&O::least))
+          .always("least", "", "", number(&O::min))
           .always("percentile_2_5", "", "", number(&O::p025))
           .always("median", "", "", number(&O::median))
           .always("percentile_97_5", "", "", number(&O::p975))
-          .always("most", "", "", number(&O::most))
+          .always("most", "", "", number(&O::max))
           .always("linear_mean", "", "predicted from the gradient at the parameters' means", number(&O::linear_mean))
           .always("linear_deviation", "", "the same of the standard deviation", number(&O::linear_deviation))
           .sometimes(
@@ -366,9 +366,9 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
   const double linear_mean = display.factor * output.linear_mean,
                linear_deviation = display.factor * output.linear_deviation;
   // Freedman and Diaconis, 1981; the few samples beyond the drawn range are in the tails.
-  const auto at = [&](double p) { return values[std::size_t(p * double(values.size() - 1))]; };
-  const double low = at(0.001), high = at(0.999);
-  double width = 2.0 * (at(0.75) - at(0.25)) / std::cbrt(double(values.size()));
+  const auto quantile = [&](double p) { return values[std::size_t(p * double(values.size() - 1))]; };
+  const double low = quantile(0.001), high = quantile(0.999);
+  double width = 2.0 * (quantile(0.75) - quantile(0.25)) / std::cbrt(double(values.size()));
   if (!(width > (high - low) / 200.0)) width = (high - low) / 50.0;
   const int bins = std::max(1, int(std::ceil((high - low) / width)));
   std::vector<double> counts(std::size_t(bins), 0.0);
@@ -439,7 +439,7 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
         "set label 903 '' at screen 0.805,{0} point pt 8 ps 0.6 lc rgb '#000000'\n",
         y(top - 0.14));
     figure.add("$sources << END\n");
-    double most = 0.1;
+    double max_share = 0.1;
     for (std::size_t r = 0; r < order.size(); ++r) {
       const std::size_t i = order[r];
       const SobolIndex none{absent, absent, absent, absent, absent, absent};
@@ -447,7 +447,7 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
       figure.add("{} {} {} {} {} {} {} {}\n", -double(r), s.first, s.first_lower, s.first_upper, s.total, s.total_lower,
                  s.total_upper, output.linear_share.empty() ? absent : output.linear_share[i]);
       for (const double x : {s.first_upper, s.total_upper, weight(i)}) {
-        if (std::isfinite(x)) most = std::max(most, x);
+        if (std::isfinite(x)) max_share = std::max(max_share, x);
       }
     }
     figure.add("END\n");
@@ -456,8 +456,8 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
       fitted_text(figure, words(inputs[order[r]].name), style::text_size, 0.42 * format.width, 0.44 * format.width, row,
                   "right");
     }
-    figure.add("set xrange [{}:{}]\nset yrange [{}:0.5]\nset border 3\nset datafile missing 'nan'\n", -0.03 * most,
-               1.04 * most, 0.5 - double(order.size()));
+    figure.add("set xrange [{}:{}]\nset yrange [{}:0.5]\nset border 3\nset datafile missing 'nan'\n", -0.03 * max_share,
+               1.04 * max_share, 0.5 - double(order.size()));
     figure.add(
         "plot $sources using 2:($1+0.22):3:4 with xerrorbars pt 7 ps 0.45 lc rgb '#000000', "
         "$sources using 5:1:6:7 with xerrorbars pt 5 ps 0.45 lc rgb '#707070', "

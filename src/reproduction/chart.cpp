@@ -89,8 +89,8 @@ void draw_marks(Figure& figure, const ChartPanel& panel) {
                span.from, span.to, span.colour);
   }
   for (const ChartMark& m : panel.marks) {
-    const std::string at = std::isfinite(m.y) ? fmt::format("first {}", m.y) : std::string("graph 0.04");
-    figure.add("set label {} '' at first {},{} point pt {} ps 0.8 lw 1.5 lc rgb '{}' front\n", ++n, m.x, at,
+    const std::string height = std::isfinite(m.y) ? fmt::format("first {}", m.y) : std::string("graph 0.04");
+    figure.add("set label {} '' at first {},{} point pt {} ps 0.8 lw 1.5 lc rgb '{}' front\n", ++n, m.x, height,
                !std::isfinite(m.y) ? mark_place
                : m.calibrated      ? mark_hollow
                                    : mark_value,
@@ -101,7 +101,7 @@ void draw_marks(Figure& figure, const ChartPanel& panel) {
 /// Labels beside the right ends of curves, kept apart.
 void draw_labels(Figure& figure, const ChartPanel& panel, double low, double high, double height) {
   struct Label {
-    double at;  ///< [in] above the foot
+    double height;  ///< [in] above the foot
     const ChartCurve* curve;
   };
   std::vector<Label> labels;
@@ -110,14 +110,15 @@ void draw_labels(Figure& figure, const ChartPanel& panel, double low, double hig
     const auto last = std::find_if(curve.y.rbegin(), curve.y.rend(), [](double y) { return std::isfinite(y); });
     if (last != curve.y.rend()) labels.push_back({height * (*last - low) / (high - low), &curve});
   }
-  std::stable_sort(labels.begin(), labels.end(), [](const Label& p, const Label& q) { return p.at < q.at; });
+  std::stable_sort(labels.begin(), labels.end(), [](const Label& p, const Label& q) { return p.height < q.height; });
   constexpr double apart = 0.125;
-  for (std::size_t n = 1; n < labels.size(); ++n) labels[n].at = std::max(labels[n].at, labels[n - 1].at + apart);
+  for (std::size_t n = 1; n < labels.size(); ++n)
+    labels[n].height = std::max(labels[n].height, labels[n - 1].height + apart);
   double top = height + 0.05;
-  for (std::size_t n = labels.size(); n-- > 0; top -= apart) labels[n].at = std::min(labels[n].at, top);
+  for (std::size_t n = labels.size(); n-- > 0; top -= apart) labels[n].height = std::min(labels[n].height, top);
   for (const Label& l : labels) {
     figure.symbols(l.curve->label, style::text_size,
-                   fmt::format("graph 1.02,graph {:.4f} left textcolor rgb '{}'", l.at / height,
+                   fmt::format("graph 1.02,graph {:.4f} left textcolor rgb '{}'", l.height / height,
                                l.curve->label_colour ? l.curve->label_colour : l.curve->style.colour));
   }
 }
@@ -309,7 +310,8 @@ void write_netcdf(const Table& table, const Provenance& provenance, const std::f
 
 const CycleCase* cycle_of(const std::vector<CycleCase>& cycles, Formulation formulation, bool springs) {
   for (const CycleCase& c : cycles) {
-    if (c.of.formulation == formulation && c.of.springs == springs && !c.run.cycle.empty()) return &c;
+    if (c.flapping_case.formulation == formulation && c.flapping_case.springs == springs && !c.run.cycle.empty())
+      return &c;
   }
   return nullptr;
 }

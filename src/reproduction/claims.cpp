@@ -80,9 +80,9 @@ LawPrediction calibrated(PublishedFile& file, std::size_t rival, std::size_t var
     if (p.law.calibrated) p.law.frequency = target.published;
     else p.drag_factor = 1.0;
   }
-  for (auto& [name, of] : file.designs) {
-    of.friction = {rivals[rival].law, p.law.coefficient};
-    if (p.drag_factor != 1.0) of = with_drag_factor(of, p.drag_factor);
+  for (auto& [name, varied] : file.designs) {
+    varied.friction = {rivals[rival].law, p.law.coefficient};
+    if (p.drag_factor != 1.0) varied = with_drag_factor(varied, p.drag_factor);
   }
   return p;
 }
@@ -131,12 +131,12 @@ const PublishedValue* input_change(const PublishedFile& file) {
 void add_intervals_of_drag(LawPrediction& p, const PublishedFile& file) {
   const PublishedValue* v = input_change(file);
   if (!rivals[p.rival].own_drag || !p.law.calibrated || !v || p.variant == recalibrated) return;
-  const auto numbers = [&](PublishedFile of) -> std::vector<double> {
-    const LawPrediction there = calibrated(of, p.rival, p.variant);
+  const auto numbers = [&](PublishedFile which) -> std::vector<double> {
+    const LawPrediction there = calibrated(which, p.rival, p.variant);
     if (!there.law.calibrated) return {absent, absent};
     const auto input = [&](const std::string& design) {
       const RunOptions options{.tolerance = 1e-8, .frequency = v->frequency, .allow_extrapolation = true};
-      return run_design(of.designs.at(design), options).metrics[Metric::power_electrical];
+      return run_design(which.designs.at(design), options).metrics[Metric::power_electrical];
     };
     return {there.drag_factor, input(v->design) / input(*v->relative_to) - 1.0};
   };
@@ -148,12 +148,12 @@ void add_intervals_of_drag(LawPrediction& p, const PublishedFile& file) {
 Claim claim_of(const PublishedValue& v, const Assessment& a, std::size_t n) {
   const MetricInfo& info = metric_info(v.metric);
   Claim c;
-  const std::string at = operating_point(v.voltage, v.frequency);
-  c.statement = v.relative_to
-                    ? v.change && v.design == "spring_on"
-                          ? fmt::format("{}, change by springs at {}", info.long_name, at)
-                          : fmt::format("{}, ratio {} at {}", info.long_name, ratio_words(v.design, *v.relative_to), at)
-                    : fmt::format("{} {} at {}", info.long_name, design_words(v.design), at);
+  const std::string point = operating_point(v.voltage, v.frequency);
+  c.statement = v.relative_to ? v.change && v.design == "spring_on"
+                                    ? fmt::format("{}, change by springs at {}", info.long_name, point)
+                                    : fmt::format("{}, ratio {} at {}", info.long_name,
+                                                  ratio_words(v.design, *v.relative_to), point)
+                              : fmt::format("{} {} at {}", info.long_name, design_words(v.design), point);
   c.where = v.where;
   c.basis = v.basis;
   c.unit = v.relative_to ? "1" : info.unit;
@@ -199,8 +199,8 @@ Claim claim_of(const PublishedTrend& t, const Assessment& a, const std::vector<A
   if (of_numbers && t.bound == PublishedTrend::Bound::none) c.tolerance = t.tolerance;
   c.published_text = of_numbers ? t.published_text : "-";
   if (t.kind == Kind::difference && t.unit == "1") {
-    if (const auto at = c.published_text.rfind(" %"); at != std::string::npos) {
-      c.published_text.replace(at, 2, " percentage points");
+    if (const auto position = c.published_text.rfind(" %"); position != std::string::npos) {
+      c.published_text.replace(position, 2, " percentage points");
     }
   }
   const bool yes_or_no = t.kind == Kind::between || t.kind == Kind::steadier || t.kind == Kind::saturates ||

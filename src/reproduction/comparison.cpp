@@ -57,20 +57,20 @@ Comparison compare(const PublishedFile& file, double tolerance) {
 std::string text_comparison(const PublishedFile& file, const Comparison& comparison) {
   std::string text = wrapped(file.title, 88, 0) + "\n  " + wrapped("source: " + file.source, 86, 2) + "\n";
   auto out = std::back_inserter(text);
-  std::string at, of;
+  std::string point, design;
   for (const ComparedValue& v : comparison.values) {
     const PublishedValue& p = v.published;
     const std::string here = operating_point(p.voltage, p.frequency);
     const std::string which = detail::spaced(p.design) + (p.relative_to ? " / " + detail::spaced(*p.relative_to) : "") +
                               (p.change ? ", change" : "");
-    if (here != at) {
+    if (here != point) {
       fmt::format_to(out, "\n{:<37}{:>11}{:>12}{:>12}{:>12}\n", "At " + here, "published", "ours", "deviation",
                      "tolerance");
-      of.clear();
+      design.clear();
     }
-    if (which != of) fmt::format_to(out, "  {}\n", which);
-    at = here;
-    of = which;
+    if (which != design) fmt::format_to(out, "  {}\n", which);
+    point = here;
+    design = which;
     const auto value = [&](double x) {
       return !p.relative_to      ? readable(x, metric_info(p.metric).unit)
              : !std::isfinite(x) ? "-"

@@ -77,8 +77,8 @@ void draw(const DotPlot& plot, PlotFormat format, const std::filesystem::path& f
         }
         const std::vector<std::string> lines = lines_of(row.label, plot.label_width);
         for (std::size_t n = 0; n < lines.size(); ++n) {
-          const double at = middle[r] + second_line * (double(n) - 0.5 * double(lines.size() - 1));
-          figure.text(lines[n], style::text_size, fmt::format("screen {},{} left", 0.05 / plot.width, on_page(at)));
+          const double height = middle[r] + second_line * (double(n) - 0.5 * double(lines.size() - 1));
+          figure.text(lines[n], style::text_size, fmt::format("screen {},{} left", 0.05 / plot.width, on_page(height)));
         }
         figure.text(row.note, style::text_size,
                     fmt::format("screen {},{} right", 1.0 - 0.04 / plot.width, on_page(middle[r])));
@@ -99,10 +99,10 @@ void draw(const DotPlot& plot, PlotFormat format, const std::filesystem::path& f
                  style::stroke(style::grey, style::solid, style::thin_width));
     }
     for (std::size_t n = 0; n < panel.references.size(); ++n) {
-      const auto& [at, name] = panel.references[n];
-      figure.add("set arrow {} from first {},graph 0 to first {},graph 1 nohead back {}\n", 601 + n, at, at,
-                 style::reference_line);
-      figure.text(name, style::text_size, fmt::format("first {},screen {} center", at, on_page(head - 0.07)));
+      const auto& [reference, name] = panel.references[n];
+      figure.add("set arrow {} from first {},graph 0 to first {},graph 1 nohead back {}\n", 601 + n, reference,
+                 reference, style::reference_line);
+      figure.text(name, style::text_size, fmt::format("first {},screen {} center", reference, on_page(head - 0.07)));
     }
     const double title_at = on_page(head - (referred ? 0.22 : 0.08));
     if (plot.panels.size() > 1) {
@@ -124,17 +124,17 @@ void draw(const DotPlot& plot, PlotFormat format, const std::filesystem::path& f
         const bool right = dot.x > panel.high, beyond = right || dot.x < panel.low;
         const double x = std::clamp(dot.x, panel.low, panel.high);
         // Shapes side by side where they would hide each other.
-        const double at = middle[r] + 0.025 * (double(dot.variant) - 0.5);
+        const double height = middle[r] + 0.025 * (double(dot.variant) - 0.5);
         if (beyond) {
           points += fmt::format(
               "set label '' at first {},first {} point pt {} ps 0.75 lw 1.6 lc rgb '{}' front\n"
               "set arrow from first {},first {} rto screen {},0 head size screen {},25 filled lw 0.6 lc rgb '{}' "
               "front\n",
-              x, at, (dot.hollow ? hollow : filled)[dot.variant], dot.colour, x, at,
+              x, height, (dot.hollow ? hollow : filled)[dot.variant], dot.colour, x, height,
               (right ? 0.09 : -0.09) / plot.width, 0.045 / plot.width, dot.colour);
         } else {
           points += fmt::format("set label '' at first {},first {} point pt {} ps 0.75 lw 1.6 lc rgb '{}' front\n", x,
-                                at, (dot.hollow ? hollow : filled)[dot.variant], dot.colour);
+                                height, (dot.hollow ? hollow : filled)[dot.variant], dot.colour);
         }
       }
     }

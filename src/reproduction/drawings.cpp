@@ -100,7 +100,7 @@ std::string moving(const AnyTransmission<double>& transmission, const CycleCase&
   for (const MechanismPose::Joint& joint : poses.front().joints) {
     if (!joint.fixed) continue;
     const PlanePoint p{mm * joint.at.x, mm * joint.at.y};
-    if (cycle.of.springs && joint.name != "axis") {
+    if (cycle.flapping_case.springs && joint.name != "axis") {
       std::string path;
       for (const PlanePoint& q : spring_spiral(p, 0.1 * H, 0.42 * H)) {
         path += fmt::format("{}{:.2f} {:.2f}", path.empty() ? "M" : "L", q.x, -q.y);
@@ -155,21 +155,21 @@ std::vector<Sheet> mechanism_sheets(const Material& m) {
                  fmt::format("{:g} Hz, {} springs", m.computed.options.frequency, springs ? "with" : "without"));
     }
     Table& t = s.table;
-    std::vector<double> angle, height, stroke, wing_lever, crank_lever;
+    std::vector<double> angle, height, stroke, wing_jacobian, crank_jacobian;
     for (int n = 0; n <= 72; ++n) {
       const double theta = two_pi * n / 72;
       const auto k = crank_kinematics(crank, std::sin(theta), std::cos(theta));
       angle.push_back(theta);
       height.push_back(slider_height(crank, std::sin(theta), std::cos(theta)));
       stroke.push_back(stroke_angle(k));
-      wing_lever.push_back(k.wing_lever);
-      crank_lever.push_back(k.crank_lever);
+      wing_jacobian.push_back(k.wing_jacobian);
+      crank_jacobian.push_back(k.crank_jacobian);
     }
     t.add("crank_angle_rad", "rad", "crank angle from the horizontal", angle);
     t.add("slider_height_m", "m", "height of the slider over the crank axis", height);
     t.add("stroke_angle_rad", "rad", "stroke angle", stroke);
-    t.add("wing_lever_m", "m", "lever of the rod force on the wings, rod-force", wing_lever);
-    t.add("crank_lever_m", "m", "lever of the rod force on the crank", crank_lever);
+    t.add("wing_lever_m", "m", "lever of the rod force on the wings, rod-force", wing_jacobian);
+    t.add("crank_lever_m", "m", "lever of the rod force on the crank", crank_jacobian);
     s.draw = [transmission, springs](PlotFormat format, const std::filesystem::path& file) {
       draw_mechanism(transmission, springs, format, file);
     };

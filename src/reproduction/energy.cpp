@@ -63,9 +63,9 @@ void draw_flows(const std::vector<FlowCase>& cases, PlotFormat format, const std
       "1\n"
       "set bmargin at screen 0\nset xrange [0:3.5]\nset yrange [0:{}]\n",
       inches);
-  double most = 0.0;
-  for (const FlowCase& c : cases) most = std::max(most, c.flow.supply);
-  const double per_watt = 1.0 / most;  // inches of band
+  double highest = 0.0;
+  for (const FlowCase& c : cases) highest = std::max(highest, c.flow.supply);
+  const double per_watt = 1.0 / highest;  // inches of band
   int object = 500;
   const auto shown = [](double watt) { return fmt::format("{:.1f} mW", 1e3 * watt); };
   for (std::size_t n = 0; n < cases.size(); ++n) {
@@ -81,11 +81,11 @@ void draw_flows(const std::vector<FlowCase>& cases, PlotFormat format, const std
           ++object, x0, y_top, x1, y_top, x1, y_top - width, x0, y_top - width, x0, y_top, fill);
     };
     double remaining = f.supply * per_watt, x = 0.05;
-    const auto leave = [&](const std::string& name, double power, const char* fill, double at, const char* colour) {
+    const auto leave = [&](const std::string& name, double power, const char* fill, double x_left, const char* colour) {
       // A formulation may also add power; there is no band for less than nothing.
       const double width = std::max(power, 0.0) * per_watt;
-      band(x, at, top, remaining, "#d0d0d0");
-      x = at;
+      band(x, x_left, top, remaining, "#d0d0d0");
+      x = x_left;
       if (width > 0.0015) {
         band(x - 0.0005, x, top, remaining, "#d0d0d0");
         bend(figure, object, x, top - remaining + width, width, floor + 0.22, fill);
@@ -221,10 +221,10 @@ std::vector<Sheet> energy_sheets(const Material& m) {
     panel.y = "power (mW)";
     const std::vector<style::Phase> order = style::phases(rows);
     std::vector<double> t_ms;
-    for (const style::Phase& at : order) t_ms.push_back(1e3 * at.periods * time.back());
+    for (const style::Phase& phase : order) t_ms.push_back(1e3 * phase.periods * time.back());
     const auto drawn = [&](const std::vector<double>& watt) {
       std::vector<double> y;
-      for (const style::Phase& at : order) y.push_back(1e3 * watt[at.row]);
+      for (const style::Phase& phase : order) y.push_back(1e3 * watt[phase.row]);
       return y;
     };
     panel.areas.push_back({t_ms, drawn(stored), into, out_of});

@@ -39,16 +39,17 @@ Sheet cycle_sheet(int number, const std::vector<CycleCase>& cycles, double Wavef
       periods.push_back(phase);
       drawn.push_back(scale * y[row]);
     }
-    const std::string which =
-        fmt::format("{}_{}", springs_name(c.of.springs), detail::underscored(wingbeat::name_of(c.of.formulation)));
-    const std::string words =
-        fmt::format("{} springs, {}", c.of.springs ? "with" : "without", wingbeat::name_of(c.of.formulation));
+    const std::string which = fmt::format("{}_{}", springs_name(c.flapping_case.springs),
+                                          detail::underscored(wingbeat::name_of(c.flapping_case.formulation)));
+    const std::string words = fmt::format("{} springs, {}", c.flapping_case.springs ? "with" : "without",
+                                          wingbeat::name_of(c.flapping_case.formulation));
     if (s.table.columns.empty())
       s.table.add("cycle_fraction", "1", "time over period, from crank angle zero", fraction);
     s.table.add("time_s_" + which, "s", "time since crank angle zero, " + words, time);
     s.table.add("crank_angle_rad_" + which, "rad", "crank angle, " + words, angle);
     s.table.add(fmt::format("{}_{}", name, which), unit, fmt::format("{}, {}", name, words), y);
-    panel.curves.push_back({periods, drawn, style_of(c.of, false), words, wingbeat::name_of(c.of.formulation)});
+    panel.curves.push_back(
+        {periods, drawn, style_of(c.flapping_case, false), words, wingbeat::name_of(c.flapping_case.formulation)});
   }
   mark(panel);
   chart.panels.push_back(std::move(panel));
@@ -77,10 +78,10 @@ std::vector<Sheet> paper_sheets(const Material& m) {
   const double f0 = r.options.frequency;
   const FlappingCase off{rod_force, false, Condition::air}, on{rod_force, true, Condition::air},
       empty{rod_force, false, Condition::vacuum}, bare{rod_force, false, Condition::wingless};
-  const auto by_condition = [](const TrendCurve& c) { return !c.of.springs; };
-  const auto by_springs = [](const TrendCurve& c) { return c.of.condition == Condition::air; };
-  const auto condition_style = [](const TrendCurve& c) { return style_of(c.of, true); };
-  const auto springs_style = [](const TrendCurve& c) { return style_of(c.of, false); };
+  const auto by_condition = [](const TrendCurve& c) { return !c.flapping_case.springs; };
+  const auto by_springs = [](const TrendCurve& c) { return c.flapping_case.condition == Condition::air; };
+  const auto condition_style = [](const TrendCurve& c) { return style_of(c.flapping_case, true); };
+  const auto springs_style = [](const TrendCurve& c) { return style_of(c.flapping_case, false); };
   const auto& j = m.assessment;
 
   const auto frequency_sheet = [&](int number, std::string what, bool conditions, std::string caption,
@@ -100,9 +101,9 @@ std::vector<Sheet> paper_sheets(const Material& m) {
     figure.into(s);
     sheets.push_back(std::move(s));
   };
-  const auto value = [&](const FlappingCase& of, Metric metric) { return at(f, of, metric, f0); };
-  const auto shown = [&](const FlappingCase& of, Metric metric) {
-    return mw(value(of, metric)) + domain_remark_at(f, of, f0);
+  const auto value = [&](const FlappingCase& which, Metric metric) { return at(f, which, metric, f0); };
+  const auto shown = [&](const FlappingCase& which, Metric metric) {
+    return mw(value(which, metric)) + domain_remark_at(f, which, f0);
   };
   const auto three = [&](Metric metric) {
     return fmt::format("At {:g} Hz: {} in air, {} in vacuum, {} without wings", f0, shown(off, metric),
@@ -132,8 +133,8 @@ std::vector<Sheet> paper_sheets(const Material& m) {
     figure.chart().panel_height = 1.9;
     figure.panel(
         f, Metric::lift_mean, "mean lift (mN)", "",
-        [](const TrendCurve& c) { return c.of.condition == Condition::air && !c.of.springs; }, springs_style,
-        springs_label_of);
+        [](const TrendCurve& c) { return c.flapping_case.condition == Condition::air && !c.flapping_case.springs; },
+        springs_style, springs_label_of);
     const double a = at(f, off, Metric::lift_mean, 10.0), b = at(f, off, Metric::lift_mean, 20.0);
     lift.caption = fmt::format(
         "In air, without springs. From 10 to 20 Hz the mean lift grows {:.2f}-fold, more than the square of the "
@@ -266,11 +267,11 @@ std::vector<Sheet> paper_sheets(const Material& m) {
   };
   const std::string hz = fmt::format("{:g} Hz", f0), v = fmt::format("{:g} V", r.options.voltage);
   // A published ratio of peaks stands where the computed peak is, over the computed peak without springs.
-  const auto ratio_of_peaks = [&](const std::vector<CycleCase>& of, const std::string& statement,
+  const auto ratio_of_peaks = [&](const std::vector<CycleCase>& cases, const std::string& statement,
                                   double R::* quantity) {
     return [&, statement, quantity](ChartPanel& panel) {
       mark_published(panel, j, statement, style::with_springs, [&](double change) {
-        return std::pair(peak_of(of, true, quantity).first, (1.0 + change) * peak_of(of, false, quantity).second);
+        return std::pair(peak_of(cases, true, quantity).first, (1.0 + change) * peak_of(cases, false, quantity).second);
       });
     };
   };
@@ -278,11 +279,10 @@ std::vector<Sheet> paper_sheets(const Material& m) {
     return [&, begins, quantity](ChartPanel& panel) {
       for (const bool springs : {false, true}) {
         const auto [phase, computed] = peak_of(r.at_frequency, springs, quantity);
-        mark_published(panel, j, fmt::format("{} {} springs at {}", begins, springs ? "with" : "without", hz),
-                       springs ? style::with_springs : style::without_springs,
-                       [&, at = phase, sign = computed](double newton) {
-                         return std::pair(at, std::copysign(1e3 * newton, sign));
-                       });
+        mark_published(
+            panel, j, fmt::format("{} {} springs at {}", begins, springs ? "with" : "without", hz),
+            springs ? style::with_springs : style::without_springs,
+            [&, x = phase, sign = computed](double newton) { return std::pair(x, std::copysign(1e3 * newton, sign)); });
       }
     };
   };

@@ -136,8 +136,9 @@ std::vector<Sheet> further_sheets(const Material& m) {
     }
     plot.rows.push_back(std::move(row));
     place.push_back(double(place.size()));
-    const double of[] = {v.without_friction(), v.saved(), v.lift_gain(), v.efficiency_gain(), v.lift_to_weight()};
-    for (std::size_t k = 0; k < std::size(of); ++k) values[k].push_back(of[k]);
+    const double quantities[] = {v.without_friction(), v.saved(), v.lift_gain(), v.efficiency_gain(),
+                                 v.lift_to_weight()};
+    for (std::size_t k = 0; k < std::size(quantities); ++k) values[k].push_back(quantities[k]);
   }
   s.table.add("variant", "1", "row of the figure from above, the paper's model first", place);
   s.table.add("input_change_without_friction", "1", "change of the electrical input when friction is left out",
@@ -157,16 +158,16 @@ std::vector<Sheet> further_sheets(const Material& m) {
 std::string further_html(const Material& m) {
   if (m.further.empty()) return "";
   const double f0 = m.computed.options.frequency;
-  const auto range = [&](auto of) {
+  const auto range = [&](auto quantity) {
     double low = INFINITY, high = -INFINITY;
     for (const FurtherVariant& v : m.further) {
-      low = std::min(low, of(v));
-      high = std::max(high, of(v));
+      low = std::min(low, quantity(v));
+      high = std::max(high, quantity(v));
     }
     return std::pair(low, high);
   };
-  const auto [most, least] = range([](const FurtherVariant& v) { return v.without_friction(); });
-  const auto [saved_most, saved_least] = range([](const FurtherVariant& v) { return v.saved(); });
+  const auto [max_change, least] = range([](const FurtherVariant& v) { return v.without_friction(); });
+  const auto [max_saved, min_saved] = range([](const FurtherVariant& v) { return v.saved(); });
   const auto [lift_low, lift_high] = range([](const FurtherVariant& v) { return v.lift_gain(); });
   const auto [lifted_low, lifted_high] = range([](const FurtherVariant& v) { return v.lift_to_weight(); });
   std::string html = fmt::format(
@@ -176,7 +177,7 @@ std::string further_html(const Material& m) {
       "domain). Springs change the input by {:+.1f} to "
       "{:+.1f} % and the mean lift at {:g} V by {:+.1f} to {:+.1f} %. Mean lift at {:g} V with springs and the crank "
       "of Table 2 is {:.2f} to {:.2f} of the weight{}.</p>\n",
-      -100.0 * least, -100.0 * most, f0, 100.0 * saved_most, 100.0 * saved_least, m.computed.options.voltage,
+      -100.0 * least, -100.0 * max_change, f0, 100.0 * max_saved, 100.0 * min_saved, m.computed.options.voltage,
       100.0 * lift_low, 100.0 * lift_high, m.computed.options.max_voltage, lifted_low, lifted_high,
       lifted_high < 1.0 ? ": no variant hovers with this crank" : "");
   html += fmt::format(

@@ -271,9 +271,10 @@ std::string page_style() {
 }
 
 std::string with_minus_signs(std::string html) {
-  for (std::size_t at = 1; at + 1 < html.size(); ++at) {
-    const bool begins = std::string_view(" [(>,").find(html[at - 1]) != std::string_view::npos;
-    if (html[at] == '-' && begins && html[at + 1] >= '0' && html[at + 1] <= '9') html.replace(at, 1, "−");
+  for (std::size_t position = 1; position + 1 < html.size(); ++position) {
+    const bool begins = std::string_view(" [(>,").find(html[position - 1]) != std::string_view::npos;
+    if (html[position] == '-' && begins && html[position + 1] >= '0' && html[position + 1] <= '9')
+      html.replace(position, 1, "−");
   }
   return html;
 }

@@ -11,8 +11,8 @@ namespace wingbeat::reproduction {
 namespace {
 
 void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = 0; (at = text.find(from, at)) != std::string::npos; at += to.size())
-    text.replace(at, from.size(), to);
+  for (std::size_t position = 0; (position = text.find(from, position)) != std::string::npos; position += to.size())
+    text.replace(position, from.size(), to);
 }
 
 /// A drawing as part of the page: without prologue, with names of its own.

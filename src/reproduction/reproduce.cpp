@@ -41,10 +41,10 @@ constexpr KnownPaper papers[] = {{"friction2022", friction2022}};
 void remove_date(const fs::path& file) {
   std::string text = read_text_file(file);
   const std::string key = "/CreationDate (D:";
-  const auto at = text.find(key);
-  if (at == std::string::npos) return;
-  for (std::size_t n = 0; n < 14 && at + key.size() + n < text.size(); ++n)
-    text[at + key.size() + n] = "20220101000000"[n];
+  const auto position = text.find(key);
+  if (position == std::string::npos) return;
+  for (std::size_t n = 0; n < 14 && position + key.size() + n < text.size(); ++n)
+    text[position + key.size() + n] = "20220101000000"[n];
   store(file, text);
 }
 

@@ -139,7 +139,7 @@ Sheet laws_sheet(const Material& m) {
 std::string short_statement(const Claim& c, const std::string& heading) {
   std::string text = c.statement;
   const auto replace = [&](const std::string& from, const std::string& to) {
-    if (const auto at = text.find(from); at != std::string::npos) text.replace(at, from.size(), to);
+    if (const auto position = text.find(from); position != std::string::npos) text.replace(position, from.size(), to);
   };
   if (!c.reading.empty() && heading.find(c.reading) != std::string::npos) replace(", " + c.reading, "");
   replace("peak magnitude of the rod force", "peak rod force");
@@ -160,11 +160,13 @@ std::vector<const Claim*> worst_first(const Assessment& a, const ClaimGroup& gro
     if (group.holds(c) && c.outcome != StatementOutcome::not_checkable) claims.push_back(&c);
   }
   const auto worst = [](const Claim* c) {
-    double most = 0.0;
+    double max_deviation = 0.0;
     for (std::size_t f = 0; f < 2; ++f) {
-      most = std::max(most, std::isfinite(c->deviation[f]) ? std::abs(c->deviation[f]) : c->within[f] ? 0.0 : 10.0);
+      max_deviation = std::max(max_deviation, std::isfinite(c->deviation[f]) ? std::abs(c->deviation[f])
+                                              : c->within[f]                 ? 0.0
+                                                                             : 10.0);
     }
-    return most;
+    return max_deviation;
   };
   std::stable_sort(claims.begin(), claims.end(), [&](const Claim* p, const Claim* q) {
     const int first = failures_first(*p), second = failures_first(*q);

@@ -50,11 +50,11 @@ class PlaceSearch {
   double width() const { return *t_.published_end - *t_.published; }
 
   double condition(const PublishedFile& file, double x) const {
-    const auto at = [&](double place) { return searched_metric(file, t_, place); };
+    const auto metric_at = [&](double place) { return searched_metric(file, t_, place); };
     switch (t_.kind) {
-      case TrendKind::crossing: return at(x) - 1.0;
-      case TrendKind::best_range: return at(x + width()) - at(x);
-      default: return at(x + step_) - at(x - step_);
+      case TrendKind::crossing: return metric_at(x) - 1.0;
+      case TrendKind::best_range: return metric_at(x + width()) - metric_at(x);
+      default: return metric_at(x + step_) - metric_at(x - step_);
     }
   }
 
@@ -100,12 +100,12 @@ Interval searched_interval(const PublishedFile& file, const PublishedTrend& t, c
   if (!std::isfinite(answer.value) || file.uncertain.empty()) return {};
   if (!is_searched(t)) {
     return propagated(file, {answer.value},
-                      [&](const PublishedFile& of) { return std::vector<double>{answer_to(of, t).value}; })[0];
+                      [&](const PublishedFile& varied) { return std::vector<double>{answer_to(varied, t).value}; })[0];
   }
   PlaceSearch search(t, answer);
   if (!search.settle(file)) return {};
   return propagated(file, {answer.value},
-                    [&](const PublishedFile& of) { return std::vector<double>{search.number(of)}; })[0];
+                    [&](const PublishedFile& varied) { return std::vector<double>{search.number(varied)}; })[0];
 }
 
 }  // namespace wingbeat

@@ -11,10 +11,10 @@ namespace {
 
 constexpr const char* efficiency_label = "system efficiency (%)";
 
-CurveStyle springs_style(const TrendCurve& c) { return style_of(c.of, false); }
+CurveStyle springs_style(const TrendCurve& c) { return style_of(c.flapping_case, false); }
 /// Beside the curves that reach the last crank radius.
 std::string springs_label_at_edge(const TrendCurve& c) {
-  return c.of.formulation == virtual_work ? springs_label(c.of.springs) : "";
+  return c.flapping_case.formulation == virtual_work ? springs_label(c.flapping_case.springs) : "";
 }
 bool all(const TrendCurve&) { return true; }
 
@@ -104,10 +104,12 @@ Sheet voltage_sheet(const Material& m, Formulation formulation, bool hold_stroke
     const auto n = std::find(r.options.crank_radii.begin(), r.options.crank_radii.end(), c.crank_radius) -
                    r.options.crank_radii.begin();
     const CurveStyle style{style::ordered[std::size_t(n) % std::size(style::ordered)]};
-    return c.of.formulation == rod_force ? style : of_virtual_work(style);
+    return c.flapping_case.formulation == rod_force ? style : of_virtual_work(style);
   };
   for (const bool springs : {false, true}) {
-    const auto wanted = [&](const TrendCurve& c) { return c.of.springs == springs && c.of.formulation == formulation; };
+    const auto wanted = [&](const TrendCurve& c) {
+      return c.flapping_case.springs == springs && c.flapping_case.formulation == formulation;
+    };
     const char* title = springs ? "with springs" : "without springs";
     figure.panel(set, Metric::lift_mean, "mean lift (mN)", title, wanted, radius_style, radius_label);
     figure.chart().panels.back().levels.push_back(

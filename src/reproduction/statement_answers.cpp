@@ -103,7 +103,7 @@ class Asked {
   /// At the statement's operating point.
   Metrics<double> here(const std::string& name, Condition condition = Condition::air) const {
     return counted(
-        metrics(design(name, t_.over.empty() ? std::nullopt : std::optional(t_.at)), t_.frequency, condition));
+        metrics(design(name, t_.over.empty() ? std::nullopt : std::optional(t_.over_value)), t_.frequency, condition));
   }
 
   /// The metrics given, noted as what the answer rests on.
@@ -125,15 +125,15 @@ Answer extreme(const Asked& ask, const PublishedTrend& t) {
   const auto value = [&](double x) { return quantity(t, ask.along(t.design, x)); };
   const bool dip = t.kind == TrendKind::trough_at;
   const TrendPeak peak = dip ? dip_along(value, t.from, t.to) : highest_along(value, t.from, t.to);
-  if (!std::isfinite(peak.at)) return {absent, dip ? "no minimum" : "none flaps inside the domain"};
-  ask.counted(ask.along(t.design, peak.at));
+  if (!std::isfinite(peak.argument)) return {absent, dip ? "no minimum" : "none flaps inside the domain"};
+  ask.counted(ask.along(t.design, peak.argument));
   const std::string unit = t.over.empty() ? "Hz" : design_parameter(t.over).unit;
-  const std::string at = readable(peak.at, unit), reached = shown_quantity(peak.value, t);
+  const std::string location = readable(peak.argument, unit), reached = shown_quantity(peak.value, t);
   const bool height = t.kind == TrendKind::peak;
-  std::string remark = height ? fmt::format("at {}", at) : reached;
+  std::string remark = height ? fmt::format("at {}", location) : reached;
   if (!peak.inside) {
-    const double end = std::abs(peak.at - t.to) < std::abs(peak.at - t.from) ? t.to : t.from;
-    const bool at_end = std::abs(peak.at - end) < 1e-3 * (t.to - t.from);
+    const double end = std::abs(peak.argument - t.to) < std::abs(peak.argument - t.from) ? t.to : t.from;
+    const bool at_end = std::abs(peak.argument - end) < 1e-3 * (t.to - t.from);
     remark += at_end ? ", end of the range" : ", at the edge of flapping or of the domain";
   }
   if (dip) {
@@ -143,33 +143,33 @@ Answer extreme(const Asked& ask, const PublishedTrend& t) {
         remark += fmt::format("; {} at {}", shown_quantity(value(end), t), readable(end, unit));
     }
   }
-  Answer answer{height ? peak.value : peak.at, fmt::format("{} ({})", height ? reached : at, remark)};
-  answer.place = peak.at;
+  Answer answer{height ? peak.value : peak.argument, fmt::format("{} ({})", height ? reached : location, remark)};
+  answer.place = peak.argument;
   answer.inside = peak.inside;
   return answer;
 }
 
 /// The range of held frequency, `width` wide, with equal values at both ends around the highest one.
 Answer best_range(const Asked& ask, const PublishedTrend& t) {
-  const auto design = ask.design(t.design, t.over.empty() ? std::nullopt : std::optional(t.at));
+  const auto design = ask.design(t.design, t.over.empty() ? std::nullopt : std::optional(t.over_value));
   const double width = *t.published_end - *t.published;
   const auto value = [&](double f) { return ask.metrics(design, f)[t.metric]; };
   const TrendPeak peak = highest_along(value, t.from, t.to, 13);
-  if (!std::isfinite(peak.at)) return {absent, "none flaps inside the domain"};
-  const double low = std::max(t.from, peak.at - width), high = std::min(peak.at, t.to - width);
+  if (!std::isfinite(peak.argument)) return {absent, "none flaps inside the domain"};
+  const double low = std::max(t.from, peak.argument - width), high = std::min(peak.argument, t.to - width);
   double start = absent;
   if (peak.inside && low < high) {
     start = crossing_along([&](double f) { return value(f + width) - value(f); }, 0.0, low, high, 5);
   }
   if (!std::isfinite(start)) {
-    ask.counted(ask.metrics(design, peak.at));
-    return {absent, fmt::format("no such range; highest at {}", readable(peak.at, "Hz"))};
+    ask.counted(ask.metrics(design, peak.argument));
+    return {absent, fmt::format("no such range; highest at {}", readable(peak.argument, "Hz"))};
   }
   for (const double f : {start, start + width}) ask.counted(ask.metrics(design, f));
   Answer answer{start + 0.5 * width,
                 fmt::format("{:.1f} to {:.1f} Hz (at least {} of the maximum of {}, which is at {})", start,
                             start + width, fmt::format("{:.1f} %", 100.0 * value(start) / peak.value),
-                            percent(peak.value), readable(peak.at, "Hz"))};
+                            percent(peak.value), readable(peak.argument, "Hz"))};
   answer.place = start;
   answer.inside = true;
   return answer;
@@ -181,11 +181,12 @@ Answer between(const Asked& ask, const PublishedTrend& t) {
   };
   const TrendPeak system = peak(Metric::efficiency_system), motor = peak(Metric::efficiency_motor),
                   mechanism = peak(Metric::efficiency_mechanism);
-  for (const TrendPeak& p : {system, motor, mechanism}) ask.counted(ask.along(t.design, p.at));
+  for (const TrendPeak& p : {system, motor, mechanism}) ask.counted(ask.along(t.design, p.argument));
   return {absent,
-          fmt::format("system {}, motor {}{}, mechanism {}", readable(system.at, "Hz"), readable(motor.at, "Hz"),
-                      motor.inside ? "" : " (end of the range)", readable(mechanism.at, "Hz")),
-          (system.at - motor.at) * (system.at - mechanism.at) <= 0.0};
+          fmt::format("system {}, motor {}{}, mechanism {}", readable(system.argument, "Hz"),
+                      readable(motor.argument, "Hz"), motor.inside ? "" : " (end of the range)",
+                      readable(mechanism.argument, "Hz")),
+          (system.argument - motor.argument) * (system.argument - mechanism.argument) <= 0.0};
 }
 
 Answer steadier(const Asked& ask, const PublishedTrend& t) {
@@ -204,8 +205,8 @@ Answer saturates(const Asked& ask, const PublishedTrend& t) {
   Answer answer{absent, "", true};
   for (const auto& [metric, name] :
        {std::pair(Metric::lift_mean, "lift"), std::pair(Metric::efficiency_system, "efficiency")}) {
-    const auto at = [&, of = metric](double x) { return ask.counted(ask.along(t.design, x))[of]; };
-    const double low = at(t.from), mid = at(t.at), high = at(t.to);
+    const auto metric_at = [&, which = metric](double x) { return ask.counted(ask.along(t.design, x))[which]; };
+    const double low = metric_at(t.from), mid = metric_at(t.over_value), high = metric_at(t.to);
     answer.text += fmt::format("{}{} {:+.1f} % above, {:+.1f} % below", answer.text.empty() ? "" : "; ", name,
                                100.0 * (high / mid - 1.0), 100.0 * (mid / low - 1.0));
     answer.holds = answer.holds && high / mid < mid / low;
@@ -248,8 +249,8 @@ Answer compared_along(const Asked& ask, const PublishedTrend& t) {
   for (const double end : {t.from, t.to}) {
     for (const std::string& design : {t.design, *t.relative_to}) ask.counted(ask.along(design, end));
   }
-  const double at = crossing_along(ratio, 1.0, t.from, t.to), low = ratio(t.from), high = ratio(t.to);
-  const std::string where = std::isfinite(at) ? fmt::format("; equal at {}", readable(at, "Hz")) : "";
+  const double crossing = crossing_along(ratio, 1.0, t.from, t.to), low = ratio(t.from), high = ratio(t.to);
+  const std::string where = std::isfinite(crossing) ? fmt::format("; equal at {}", readable(crossing, "Hz")) : "";
   if (t.kind == TrendKind::turns) {
     return {absent,
             fmt::format("{:+.1f} % at {}, {:+.1f} % at {}{}", 100.0 * (low - 1.0), readable(t.from, "Hz"),
@@ -303,11 +304,11 @@ Answer answer_by(const Asked& ask, const PublishedFile& file, const PublishedTre
       const auto ratio = [&](double x) {
         return ask.along(t.design, x)[t.metric] / ask.along(*t.relative_to, x)[t.metric];
       };
-      const double at = crossing_along(ratio, 1.0, t.from, t.to);
-      if (!std::isfinite(at)) return {absent, "never"};
-      for (const std::string& name : {t.design, *t.relative_to}) ask.counted(ask.along(name, at));
-      Answer answer = of_number(at, t, false);
-      answer.place = at;
+      const double crossing = crossing_along(ratio, 1.0, t.from, t.to);
+      if (!std::isfinite(crossing)) return {absent, "never"};
+      for (const std::string& name : {t.design, *t.relative_to}) ask.counted(ask.along(name, crossing));
+      Answer answer = of_number(crossing, t, false);
+      answer.place = crossing;
       answer.inside = true;
       return answer;
     }
@@ -363,7 +364,7 @@ bool is_searched(const PublishedTrend& t) {
 double searched_metric(const PublishedFile& file, const PublishedTrend& t, double x) {
   const Asked ask(file, t);
   if (t.kind == TrendKind::best_range) {
-    return ask.metrics(ask.design(t.design, t.over.empty() ? std::nullopt : std::optional(t.at)), x)[t.metric];
+    return ask.metrics(ask.design(t.design, t.over.empty() ? std::nullopt : std::optional(t.over_value)), x)[t.metric];
   }
   if (t.kind == TrendKind::crossing) return ask.along(t.design, x)[t.metric] / ask.along(*t.relative_to, x)[t.metric];
   return quantity(t, ask.along(t.design, x));
@@ -371,7 +372,7 @@ double searched_metric(const PublishedFile& file, const PublishedTrend& t, doubl
 
 std::vector<Design<double>> designs_of(const PublishedFile& file, const PublishedTrend& t) {
   const Asked ask(file, t);
-  const auto x = t.over.empty() ? std::nullopt : std::optional(t.at);
+  const auto x = t.over.empty() ? std::nullopt : std::optional(t.over_value);
   std::vector<Design<double>> designs;
   for (const std::string& name : {t.design, t.relative_to.value_or("")}) {
     if (name.empty()) continue;

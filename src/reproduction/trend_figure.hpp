@@ -53,13 +53,13 @@ inline void finish(Sheet& s, Chart chart) {
   };
 }
 
-inline CurveStyle style_of(const FlappingCase& of, bool by_condition) {
-  const CurveStyle style = by_condition ? of.condition == Condition::air      ? air
-                                          : of.condition == Condition::vacuum ? vacuum
-                                                                              : wingless
-                           : of.springs ? springs_on
-                                        : springs_off;
-  return of.formulation == rod_force ? style : of_virtual_work(style);
+inline CurveStyle style_of(const FlappingCase& which, bool by_condition) {
+  const CurveStyle style = by_condition    ? which.condition == Condition::air      ? air
+                                             : which.condition == Condition::vacuum ? vacuum
+                                                                                    : wingless
+                           : which.springs ? springs_on
+                                           : springs_off;
+  return which.formulation == rod_force ? style : of_virtual_work(style);
 }
 
 /// The two formulations, where curves have labels beside them.
@@ -76,10 +76,10 @@ inline const char* condition_label(Condition condition) {
 
 /// Beside curves of rod-force; those of virtual-work have the same colours.
 inline std::string springs_label_of(const TrendCurve& c) {
-  return c.of.formulation == rod_force ? springs_label(c.of.springs) : "";
+  return c.flapping_case.formulation == rod_force ? springs_label(c.flapping_case.springs) : "";
 }
 inline std::string condition_label_of(const TrendCurve& c) {
-  return c.of.formulation == rod_force ? condition_label(c.of.condition) : "";
+  return c.flapping_case.formulation == rod_force ? condition_label(c.flapping_case.condition) : "";
 }
 
 /// A figure of metrics along an axis, one panel for each metric.
@@ -102,9 +102,9 @@ class TrendFigure {
       if (!wanted(curve)) continue;
       const std::vector<double> y = column(curve, metric);
       draw_curve(panel, set, curve, scaled(y, scale_of(metric)), style(curve), label_of(curve));
-      std::string name = fmt::format("{}_{}", condition_of(curve), springs_name(curve.of.springs));
+      std::string name = fmt::format("{}_{}", condition_of(curve), springs_name(curve.flapping_case.springs));
       std::string meaning =
-          fmt::format("{}, {}", condition_of(curve), curve.of.springs ? "with springs" : "without springs");
+          fmt::format("{}, {}", condition_of(curve), curve.flapping_case.springs ? "with springs" : "without springs");
       if (std::isfinite(curve.crank_radius)) {
         name += fmt::format("_crank_{:g}_mm", 1e3 * curve.crank_radius);
         meaning += fmt::format(", crank radius {:g} mm", 1e3 * curve.crank_radius);
@@ -114,9 +114,9 @@ class TrendFigure {
         meaning += ", " + tag;
         std::replace(name.begin(), name.end(), ' ', '_');
       }
-      if (curve.of.condition != Condition::wingless) {
-        name += fmt::format("_{}", detail::underscored(wingbeat::name_of(curve.of.formulation)));
-        meaning += fmt::format(", {}", wingbeat::name_of(curve.of.formulation));
+      if (curve.flapping_case.condition != Condition::wingless) {
+        name += fmt::format("_{}", detail::underscored(wingbeat::name_of(curve.flapping_case.formulation)));
+        meaning += fmt::format(", {}", wingbeat::name_of(curve.flapping_case.formulation));
       }
       tabulate(fmt::format("{}_{}", info.key, name), info.unit, fmt::format("{}, {}", info.long_name, meaning), y);
       std::vector<double> domain;
@@ -151,10 +151,11 @@ class TrendFigure {
       left = true;
     }
     const std::vector<double> x = scaled(set.axis, scale_);
-    const char* formulation = curve.of.condition == Condition::wingless ? "" : wingbeat::name_of(curve.of.formulation);
-    std::string name = curve.of.condition != Condition::air ? condition_label(curve.of.condition)
-                       : curve.of.springs                   ? "with springs"
-                                                            : "without springs";
+    const char* formulation =
+        curve.flapping_case.condition == Condition::wingless ? "" : wingbeat::name_of(curve.flapping_case.formulation);
+    std::string name = curve.flapping_case.condition != Condition::air ? condition_label(curve.flapping_case.condition)
+                       : curve.flapping_case.springs                   ? "with springs"
+                                                                       : "without springs";
     if (std::isfinite(curve.crank_radius)) name += fmt::format(", crank {:g} mm", 1e3 * curve.crank_radius);
     if (*formulation) name += fmt::format(", {}", formulation);
     const bool ends_outside = !outside.empty() && std::isfinite(outside.back());
@@ -181,36 +182,36 @@ class TrendFigure {
     }
     return text;
   }
-  static const char* condition_of(const TrendCurve& curve) { return wingbeat::name_of(curve.of.condition); }
+  static const char* condition_of(const TrendCurve& curve) { return wingbeat::name_of(curve.flapping_case.condition); }
   double scale_;
   bool outside_ = false;
   Chart chart_;
   Table table_;
 };
 
-inline const TrendCurve& curve_of(const TrendSet& set, const FlappingCase& of, double radius = absent) {
+inline const TrendCurve& curve_of(const TrendSet& set, const FlappingCase& which, double radius = absent) {
   for (const TrendCurve& c : set.curves) {
-    if (c.of == of && (!std::isfinite(radius) || c.crank_radius == radius)) return c;
+    if (c.flapping_case == which && (!std::isfinite(radius) || c.crank_radius == radius)) return c;
   }
   throw std::runtime_error("a curve is missing");
 }
 
 /// A metric at the place of an axis nearest to x.
-inline double at(const TrendSet& set, const FlappingCase& of, Metric metric, double x) {
+inline double at(const TrendSet& set, const FlappingCase& which, Metric metric, double x) {
   std::size_t best = 0;
   for (std::size_t n = 0; n < set.axis.size(); ++n) {
     if (std::abs(set.axis[n] - x) < std::abs(set.axis[best] - x)) best = n;
   }
-  return curve_of(set, of).metrics[best][metric];
+  return curve_of(set, which).metrics[best][metric];
 }
 
 /// " (outside the domain)" where the point of the curve nearest to x is; empty inside.
-inline const char* domain_remark_at(const TrendSet& set, const FlappingCase& of, double x) {
+inline const char* domain_remark_at(const TrendSet& set, const FlappingCase& which, double x) {
   std::size_t best = 0;
   for (std::size_t n = 0; n < set.axis.size(); ++n) {
     if (std::abs(set.axis[n] - x) < std::abs(set.axis[best] - x)) best = n;
   }
-  return curve_of(set, of).domain[best].any() ? " (outside the domain)" : "";
+  return curve_of(set, which).domain[best].any() ? " (outside the domain)" : "";
 }
 
 /// Which of the cycles are outside the domain, as a sentence after a caption.
@@ -218,8 +219,9 @@ inline std::string domain_remark(const std::vector<CycleCase>& cycles) {
   std::string outside;
   for (const CycleCase& c : cycles) {
     if (c.run.domain.none()) continue;
-    outside += fmt::format("{}{} springs, {}", outside.empty() ? "" : "; ", c.of.springs ? "with" : "without",
-                           wingbeat::name_of(c.of.formulation));
+    outside +=
+        fmt::format("{}{} springs, {}", outside.empty() ? "" : "; ", c.flapping_case.springs ? "with" : "without",
+                    wingbeat::name_of(c.flapping_case.formulation));
   }
   return outside.empty() ? " All cycles are inside the domain." : fmt::format(" Outside the domain: {}.", outside);
 }

@@ -235,11 +235,11 @@ std::uint64_t SweepJournal::designs_held() const {
 bool SweepJournal::transfer(std::uint64_t chunk, std::byte* bytes, bool write) const {
   for (std::size_t column = 0; column < layout_.columns(); ++column) {
     const std::uint64_t size = layout_.bytes_of_value(column);
-    const std::uint64_t at = places_[column] + layout_.first(chunk) * size;
+    const std::uint64_t offset = places_[column] + layout_.first(chunk) * size;
     const std::size_t length = std::size_t(layout_.size(chunk) * size);
     std::byte* const values = bytes + layout_.begin(column);
-    const bool done =
-        write ? write_at(data_file_, values, length, at) : read_at(data_file_, values, length, at) == ssize_t(length);
+    const bool done = write ? write_at(data_file_, values, length, offset)
+                            : read_at(data_file_, values, length, offset) == ssize_t(length);
     if (!done) return false;
   }
   return true;
@@ -265,16 +265,16 @@ std::uint64_t SweepJournal::frame_sum(int data_file, std::span<const std::uint64
   const std::uint64_t size = ::fstat(data_file, &found) == 0 ? std::uint64_t(found.st_size) : 0;
   columns.emplace_back(std::max(size, columns.back().second), 0);
   std::vector<std::byte> bytes;
-  std::uint64_t sum = 1, at = 0;
+  std::uint64_t sum = 1, offset = 0;
   for (const auto& [begin, end] : columns) {
-    constexpr std::uint64_t most = 1u << 20;
-    while (at < begin) {
-      bytes.assign(std::size_t(std::min(most, begin - at)), std::byte(0));
-      (void)!read_at(data_file, bytes.data(), bytes.size(), at);
+    constexpr std::uint64_t max_bytes = 1u << 20;
+    while (offset < begin) {
+      bytes.assign(std::size_t(std::min(max_bytes, begin - offset)), std::byte(0));
+      (void)!read_at(data_file, bytes.data(), bytes.size(), offset);
       sum = checksum(bytes, sum);
-      at += bytes.size();
+      offset += bytes.size();
     }
-    at = std::max(at, end);
+    offset = std::max(offset, end);
   }
   return sum;
 }

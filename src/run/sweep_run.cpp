@@ -147,7 +147,7 @@ class Run {
       std::vector<std::byte> bytes;
     };
     // One chunk more than threads, so that no thread waits for the end of a chunk.
-    const std::size_t most = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) + 1;
+    const std::size_t max_pieces = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism) + 1;
     std::mutex pool_mutex;
     std::deque<Work> works;  // those under way, too: where a stage throws, none is lost
     std::vector<Work*> idle;
@@ -176,9 +176,9 @@ class Run {
       const std::lock_guard lock(pool_mutex);
       idle.push_back(work);
     };
-    tbb::parallel_pipeline(most, tbb::make_filter<void, Work*>(tbb::filter_mode::serial_in_order, begin) &
-                                     tbb::make_filter<Work*, Work*>(tbb::filter_mode::parallel, solve) &
-                                     tbb::make_filter<Work*, void>(tbb::filter_mode::serial_out_of_order, end));
+    tbb::parallel_pipeline(max_pieces, tbb::make_filter<void, Work*>(tbb::filter_mode::serial_in_order, begin) &
+                                           tbb::make_filter<Work*, Work*>(tbb::filter_mode::parallel, solve) &
+                                           tbb::make_filter<Work*, void>(tbb::filter_mode::serial_out_of_order, end));
   }
 
   void compute_with_ranks(Ranks& ranks, const Study& study) {

@@ -80,9 +80,9 @@ bool invert_fixed(double* a) {
 
 template <int size>
 bool factorise_sized(int any_size, double* a, int* pivots) {
-  constexpr int most = size > 0 ? size : max_factorised;
+  constexpr int max_size = size > 0 ? size : max_factorised;
   const int n = size > 0 ? size : any_size;
-  double scale[most];
+  double scale[max_size];
   for (int row = 0; row < n; ++row) {
     double largest = 0.0;
     for (int k = 0; k < n; ++k) largest = std::max(largest, std::abs(a[k * n + row]));
@@ -104,7 +104,7 @@ bool factorise_sized(int any_size, double* a, int* pivots) {
       for (int j = 0; j < n; ++j) std::swap(a[j * n + k], a[j * n + pivot]);
     }
     const double inverse = 1.0 / column[k];
-    double factors[most] = {};  // of all rows, so that loops have the same length for all k
+    double factors[max_size] = {};  // of all rows, so that loops have the same length for all k
     for (int row = k + 1; row < n; ++row) factors[row] = column[row] *= inverse;
     for (int j = k + 1; j < n; ++j) {
       double* next = a + j * n;

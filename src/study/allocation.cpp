@@ -65,9 +65,9 @@ DriveWave<double> wave_of(DriveInput which, double value) {
 
 class Sides {
  public:
-  Sides(const Linearisation& at, double hinge_offset)
-      : orbit_(at.orbit.record),
-        reporting_(reporting_of(at.operating_point.design)),
+  Sides(const Linearisation& linearisation, double hinge_offset)
+      : orbit_(linearisation.orbit.record),
+        reporting_(reporting_of(linearisation.operating_point.design)),
         hinge_offset_(hinge_offset),
         slopes_(wing_load_slopes(orbit_)) {
     vehicle_ = orbit_.vehicle();
@@ -131,13 +131,14 @@ class Sides {
   }
 
   SideMeans side_of(const WingLoads& all) const {
-    const auto of = [&](WingLoad which) { return all[std::size_t(which)]; };
+    const auto load = [&](WingLoad which) { return all[std::size_t(which)]; };
     const double r = centre_, per_r = hinge_offset_ / std::max(centre_, 1e-300);
     // The drag M_aero / r acts against beta' at p = (0, d, 0) + r e_r.
-    return {0.5 * of(WingLoad::lift), 0.5 * (hinge_offset_ * of(WingLoad::lift) + r * of(WingLoad::lift_sideways)),
-            0.5 * r * of(WingLoad::lift_forward),
-            0.5 * (of(WingLoad::moment) + (r > 0.0 ? per_r * of(WingLoad::moment_sideways) : 0.0)),
-            of(WingLoad::frequency)};
+    return {0.5 * load(WingLoad::lift),
+            0.5 * (hinge_offset_ * load(WingLoad::lift) + r * load(WingLoad::lift_sideways)),
+            0.5 * r * load(WingLoad::lift_forward),
+            0.5 * (load(WingLoad::moment) + (r > 0.0 ? per_r * load(WingLoad::moment_sideways) : 0.0)),
+            load(WingLoad::frequency)};
   }
 
   /// In steady flapping at that voltage or amplitude [V], the motor as warm as at the operating point.
@@ -191,17 +192,17 @@ class Sides {
 struct PointsAround {
   AllocationPoint scale;  ///< of the quantities, also of those that a symmetry makes zero
   double step;
-  AllocationPoint far_below, below, at, above, far_above;
+  AllocationPoint far_below, below, centre, above, far_above;
 };
 
 /// Sets a quantity's slope from points, its error and the step; whether the exact slope is within that error.
 bool set_slope_of_points(AllocationMap& map, const PointsAround& p, double AllocationPoint::* member) {
-  const double h = p.step, at = p.at.*member;
+  const double h = p.step, centre = p.centre.*member;
   const double near = (p.above.*member - p.below.*member) / (2.0 * h);
   const double far = (p.far_above.*member - p.far_below.*member) / (4.0 * h);
   // Where the map has a kink within the nearer step, the curvatures that both pairs show differ.
-  const double near_curvature = (p.above.*member - 2.0 * at + p.below.*member) / (h * h);
-  const double far_curvature = (p.far_above.*member - 2.0 * at + p.far_below.*member) / (4.0 * h * h);
+  const double near_curvature = (p.above.*member - 2.0 * centre + p.below.*member) / (h * h);
+  const double far_curvature = (p.far_above.*member - 2.0 * centre + p.far_below.*member) / (4.0 * h * h);
   const double rounding = 2.0 * point_tolerance * p.scale.*member / h;
   map.slope_of_points.*member = (4.0 * near - far) / 3.0;
   map.slope_of_points_error.*member = std::abs(near - far) + h * std::abs(near_curvature - far_curvature) + rounding;
@@ -214,15 +215,15 @@ bool set_slope_of_points(AllocationMap& map, const PointsAround& p, double Alloc
 /// one that the map does not have.
 template <class PointAt>
 void set_slopes_of_points(AllocationMap& map, std::size_t middle, double arm, const PointAt& point_at) {
-  const AllocationPoint* at = &map.points[middle];
-  const double lift = std::abs(at->lift), moment = arm * lift;
-  PointsAround around{{0.0, lift, moment, moment, moment, at->frequency},
-                      (at + 1)->input - at->input,
-                      at[-2],
-                      at[-1],
-                      at[0],
-                      at[1],
-                      at[2]};
+  const AllocationPoint* middle_point = &map.points[middle];
+  const double lift = std::abs(middle_point->lift), moment = arm * lift;
+  PointsAround around{{0.0, lift, moment, moment, moment, middle_point->frequency},
+                      (middle_point + 1)->input - middle_point->input,
+                      middle_point[-2],
+                      middle_point[-1],
+                      middle_point[0],
+                      middle_point[1],
+                      middle_point[2]};
   map.slope_of_points.input = map.slope_of_points_error.input = map.slope_of_points_step.input = map.slope.input;
   std::vector<double AllocationPoint::*> open;
   for (const AllocationColumn& column : allocation_columns) open.push_back(column.member);
@@ -230,17 +231,17 @@ void set_slopes_of_points(AllocationMap& map, std::size_t middle, double arm, co
     std::erase_if(open, [&](double AllocationPoint::* member) { return set_slope_of_points(map, around, member); });
     if (open.empty() || halvings == max_halvings) return;
     const double step = 0.5 * around.step, centre = map.slope.input;
-    around = {around.scale, step, around.below, point_at(centre - step), around.at, point_at(centre + step),
+    around = {around.scale, step, around.below, point_at(centre - step), around.centre, point_at(centre + step),
               around.above};
   }
 }
 
 }  // namespace
 
-std::vector<AllocationMap> allocation_maps(const Linearisation& at, double hinge_offset) {
+std::vector<AllocationMap> allocation_maps(const Linearisation& linearisation, double hinge_offset) {
   std::vector<AllocationMap> maps;
-  if (!at.model) return maps;
-  Sides sides(at, hinge_offset);
+  if (!linearisation.model) return maps;
+  Sides sides(linearisation, hinge_offset);
   const double voltage = sides.vehicle().voltage;
   const bool direct = drive_of(sides.vehicle()).alternating, two = sides.vehicle().motors == 2.0;
   const auto add = [&](AllocationInput which, double low, double high, int count, int middle) {

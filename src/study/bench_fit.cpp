@@ -49,7 +49,7 @@ void check_fit(const BenchFit& fit) {
   require(fit.starts >= 1 && fit.starts <= max_fit_starts, "fit.starts", "must lie between 1 and 1000", "1",
           fit.starts);
   if (fit.loss != Loss::none) {
-    require(fit.loss_scale >= least_loss_scale && fit.loss_scale <= most_loss_scale, "fit.loss_scale",
+    require(fit.loss_scale >= min_loss_scale && fit.loss_scale <= max_loss_scale, "fit.loss_scale",
             "must lie between 1 and 4: elsewhere intervals do not hold what they say", "1", fit.loss_scale);
   }
   for (const FreeParameter& p : fit.parameters) {

@@ -55,7 +55,7 @@ BodyDerivatives side_derivatives(double side, double beta, double beta_dot, cons
   const Vector3d down = Vector3d::UnitZ();
   const double s = sign_of(beta_dot), scale = air_density * std::abs(beta_dot);
   const double lift_slope = 0.5 * (c.lift.v[0] + c.drag.a), drag_slope = 0.5 * (c.lift.a - c.drag.v[0]);
-  BodyDerivatives of;
+  BodyDerivatives result;
   for (int motion = 0; motion < 6; ++motion) {
     const Vector3d unit = Vector3d::Unit(motion % 3);
     // dV = gained[0] + gained[1] r
@@ -73,9 +73,9 @@ BodyDerivatives side_derivatives(double side, double beta, double beta_dot, cons
                         times(about_span[axis], moments[std::size_t(power) + 1]);
       }
     }
-    of.col(motion) << force, moment;
+    result.col(motion) << force, moment;
   }
-  return of;
+  return result;
 }
 
 }  // namespace

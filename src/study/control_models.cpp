@@ -15,11 +15,11 @@ ControlModels control_models(const Design<double>& design, const ControlOptions&
           options.hinge_offset);
   ControlModels models;
   models.options = options;
-  models.linear = linearise(design, options.at, options.step_cycles);
+  models.linear = linearise(design, options.operating_point, options.step_cycles);
   if (!models.linear.model) return models;
-  const Design<double>& at = models.linear.operating_point.design;
-  models.body =
-      body_derivatives(at, resolve(at, options.at.condition), models.linear.orbit.record, options.hinge_offset);
+  const Design<double>& operated = models.linear.operating_point.design;
+  models.body = body_derivatives(operated, resolve(operated, options.operating_point.condition),
+                                 models.linear.orbit.record, options.hinge_offset);
   if (options.allocation_maps) models.maps = allocation_maps(models.linear, options.hinge_offset);
   return models;
 }

@@ -20,10 +20,10 @@ double between(double a, double b) {
 }  // namespace
 
 double percentile(const std::vector<double>& sorted, double p) {
-  const double at = p * double(sorted.size() - 1);
-  const std::size_t k = std::min(std::size_t(at), sorted.size() - 1);
+  const double rank = p * double(sorted.size() - 1);
+  const std::size_t k = std::min(std::size_t(rank), sorted.size() - 1);
   const std::size_t above = std::min(k + 1, sorted.size() - 1);
-  return sorted[k] + (at - double(k)) * (sorted[above] - sorted[k]);
+  return sorted[k] + (rank - double(k)) * (sorted[above] - sorted[k]);
 }
 
 double normal_probability(double z) { return 0.5 * std::erfc(-z / std::numbers::sqrt2); }

@@ -426,7 +426,8 @@ class Flight {
         }
         if (const auto why = end_at(state, std::max(first - drawn - length, 0.0))) {
           result_.end = *why;
-          return end_here(last_row([&](const State& s, double at) { return !end_at(s, std::max(first - at, 0.0)); }));
+          return end_here(last_row(
+              [&](const State& s, double drawn_there) { return !end_at(s, std::max(first - drawn_there, 0.0)); }));
         }
         drawn = length < end - drawn ? drawn + length : end;
         y = next;

@@ -141,9 +141,9 @@ std::vector<double> by_differences(const Design<double>& design, Condition condi
   std::vector<double> result;
   for (const DesignParameter& p : parameters) {
     const double x = p.value(design).value_or(absent), step = 1e-4 * std::abs(x);
-    const auto time = [&](double at) {
+    const auto time = [&](double stated) {
       Design<double> d = design;
-      p.set(d, at);
+      p.set(d, stated);
       try {
         validate(d);
         const EnduranceResult flight = flight_of(d, condition, std::min(tolerance, 1e-8), wanted);
@@ -175,9 +175,9 @@ Endurance endurance_of(const Design<double>& design, Condition condition, double
   const bool warms_up = design.motor.thermal.resistance_winding && design.motor.thermal.time_constant_winding;
   const bool one_orbit = design.supply.type == SupplyType::battery_sine;
   const FlightGradient gradient(design, condition, tolerance, parameters);
-  const auto derivatives = [&](double time, double s_end, std::optional<FlightEvent> event, FlightMetrics of) {
+  const auto derivatives = [&](double time, double s_end, std::optional<FlightEvent> event, FlightMetrics metric) {
     if (!(time > 0.0)) return std::vector<double>(parameters.size(), absent);
-    if (one_orbit || warms_up || !event) return by_differences(design, condition, tolerance, parameters, of);
+    if (one_orbit || warms_up || !event) return by_differences(design, condition, tolerance, parameters, metric);
     const EnduranceRow& first = flight.rows.front();
     return gradient.of_time(time, first.charge, first.metrics[Metric::current_mean], s_end, *event);
   };

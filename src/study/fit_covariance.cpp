@@ -54,11 +54,11 @@ FitNoise::FitNoise(const BenchFit& fit, BenchFitter& fitter, const std::vector<s
     const auto found = own.find(observation.quantity);
     const std::size_t g = group_of_[o] = found == own.end() ? 0 : found->second;
     if (!bench.predictions()[observation.point].reached) continue;
-    const LossAt at = fitter.loss_at(o);
+    const LossAt loss = fitter.loss_at(o);
     counts[g] += 1.0;
-    slopes[g] += at.slope;
-    slope_squares[g] += square(at.slope);
-    squares[g] += square(at.psi);
+    slopes[g] += loss.slope;
+    slope_squares[g] += square(loss.slope);
+    squares[g] += square(loss.psi);
   }
   for (std::size_t g = 0; g < groups_.size(); ++g) {
     NoiseGroup& group = groups_[g];

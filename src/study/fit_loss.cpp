@@ -51,18 +51,18 @@ LossAt loss_at(Loss loss, double scale, double residual) {
 double counted_square(Loss loss, double residual) {
   const double s = residual * residual;
   if (loss == Loss::none) return s;
-  static const BoundedSquare of = bounded_square();
-  return std::min(s, square(counted_residual)) / of.mean;
+  static const BoundedSquare bounded = bounded_square();
+  return std::min(s, square(counted_residual)) / bounded.mean;
 }
 
 double counted_information(Loss loss) {
-  static const BoundedSquare of = bounded_square();
-  return loss == Loss::none ? 1.0 : 2.0 * square(of.mean) / of.variance;
+  static const BoundedSquare bounded = bounded_square();
+  return loss == Loss::none ? 1.0 : 2.0 * square(bounded.mean) / bounded.variance;
 }
 
 double scale_efficiency(Loss loss) {
-  static const BoundedSquare of = bounded_square();
-  return loss == Loss::none ? 1.0 : 0.5 * square(of.growth) / of.variance;
+  static const BoundedSquare bounded = bounded_square();
+  return loss == Loss::none ? 1.0 : 0.5 * square(bounded.growth) / bounded.variance;
 }
 
 }  // namespace wingbeat

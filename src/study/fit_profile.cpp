@@ -16,7 +16,7 @@ ProfileSide profile_loss(const BenchFit& fit, BenchFitter& fitter, const std::ve
   }
   // Of the least loss: its rise is wanted to a few hundredths.
   constexpr double accuracy = 1e-4;
-  ProfileSide of;
+  ProfileSide crossing;
   // The others start where the straight line through the least and what was last found for them leads to, at first
   // the line that the covariance gives.
   std::vector<double> slope(best.size(), 0.0);
@@ -33,7 +33,7 @@ ProfileSide profile_loss(const BenchFit& fit, BenchFitter& fitter, const std::ve
       for (const std::size_t f : others) slope[f] = (outcome.x[f] - best[f]) / (value - best[k]);
     }
     const double rise = std::max(outcome.cost - least, 0.0);
-    of.points.push_back({value, rise});
+    crossing.points.push_back({value, rise});
     return std::sqrt(rise);
   };
   const double bound = side < 0 ? p.lower : p.upper;
@@ -44,13 +44,13 @@ ProfileSide profile_loss(const BenchFit& fit, BenchFitter& fitter, const std::ve
     if (clipped) next = bound;
     const double root = excess(next);
     if (std::abs(root - wanted) < 0.01 * wanted) {
-      of.end = next;
+      crossing.end = next;
       break;
     }
     if (root < wanted) {
       inner = next, inner_root = root;
       if (clipped) {
-        of.end = bound;  // the loss does not end the interval, the bound does
+        crossing.end = bound;  // the loss does not end the interval, the bound does
         break;
       }
     } else {
@@ -62,16 +62,17 @@ ProfileSide profile_loss(const BenchFit& fit, BenchFitter& fitter, const std::ve
       next = best[k] + (inner - best[k]) * std::clamp(wanted / std::max(inner_root, 1e-9), 1.1, 3.0);
     }
   }
-  return of;
+  return crossing;
 }
 
-void add_profile(const ProfileSide& lower, const ProfileSide& upper, double best, FittedParameter& of) {
-  of.profile_lower_95 = lower.end;
-  of.profile_upper_95 = upper.end;
-  of.profile = lower.points;
-  of.profile.insert(of.profile.end(), upper.points.begin(), upper.points.end());
-  of.profile.push_back({best, 0.0});
-  std::sort(of.profile.begin(), of.profile.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
+void add_profile(const ProfileSide& lower, const ProfileSide& upper, double best, FittedParameter& parameter) {
+  parameter.profile_lower_95 = lower.end;
+  parameter.profile_upper_95 = upper.end;
+  parameter.profile = lower.points;
+  parameter.profile.insert(parameter.profile.end(), upper.points.begin(), upper.points.end());
+  parameter.profile.push_back({best, 0.0});
+  std::sort(parameter.profile.begin(), parameter.profile.end(),
+            [](const auto& a, const auto& b) { return a.value < b.value; });
 }
 
 }  // namespace wingbeat

@@ -20,6 +20,6 @@ ProfileSide profile_loss(const BenchFit& fit, BenchFitter& fitter, const std::ve
                          const std::vector<std::size_t>& free, const FitResult& result, std::size_t k, int side);
 
 /// Puts both sides and the least, at `best`, into a parameter's profile.
-void add_profile(const ProfileSide& lower, const ProfileSide& upper, double best, FittedParameter& of);
+void add_profile(const ProfileSide& lower, const ProfileSide& upper, double best, FittedParameter& parameter);
 
 }  // namespace wingbeat

@@ -29,8 +29,8 @@ class FlightPath {
   /// One step from x; empty where rates are missing on it.
   std::optional<Step> take(double x, const State& y, double h) {
     struct NoRates {};
-    const auto system = [this](const State& at, State& dy, double where) {
-      const std::optional<State> r = rates_(where, at);
+    const auto system = [this](const State& state, State& dy, double where) {
+      const std::optional<State> r = rates_(where, state);
       if (!r) throw NoRates{};
       dy = *r;
     };

@@ -14,9 +14,9 @@ namespace {
 using detail::VoltageTrial;
 using detail::VoltageTrials;
 using Finding = SearchFinding::Kind;
-using Place = SearchFinding::Place;
+using VoltagePoint = SearchFinding::VoltagePoint;
 
-Place frequency_at(const VoltageTrial& t) { return {t.voltage, t.frequency}; }
+VoltagePoint frequency_at(const VoltageTrial& t) { return {t.voltage, t.frequency}; }
 
 /// Widest bracket of the lowest voltage at which a vehicle flaps, relative.
 constexpr double onset_width = 1e-5;
@@ -126,17 +126,17 @@ class Search {
 
   /// The secant's step in the logarithms of frequency and voltage; somewhat further outside a bracket, so that one is
   /// found soon, and twice as far where the trial's own error counts.
-  double secant(const VoltageTrial& t, double most) const {
+  double secant(const VoltageTrial& t, double max_ratio) const {
     const double gap = std::log(target_ / t.frequency);
     double step = gap / slope_;
     if (!(low_ && high_)) step *= std::abs(gap) < 100.0 * trials_.accuracy() ? 2.0 : 1.0 + 0.1 * std::abs(step);
-    return t.voltage * std::clamp(std::exp(step), 1.0 / most, most);
+    return t.voltage * std::clamp(std::exp(step), 1.0 / max_ratio, max_ratio);
   }
 
   /// The trial flaps outside the range, no faster than wanted: how fast does it flap inside?
   FrequencySearch outside_domain(const VoltageTrial& trial) {
     SearchFinding finding = found(Finding::out_of_range);
-    finding.at = frequency_at(trial);
+    finding.point = frequency_at(trial);
     finding.limits = trial.limits;
     VoltageTrial outside = trial;
     for (int n = 0; n < 40 && !(inside_ && inside_->voltage < outside.voltage); ++n) {
@@ -149,11 +149,11 @@ class Search {
     }
     // Of the limits those count that are exceeded outside: others may be touched all along.
     const auto margin = [limits = outside.excess](const VoltageTrial& t) {
-      double most = -1.0;
+      double max_excess = -1.0;
       for (std::size_t k = 0; k < limits.size(); ++k) {
-        if (!(limits[k] <= 0.0)) most = std::isfinite(t.excess[k]) ? std::max(most, t.excess[k]) : 1.0;
+        if (!(limits[k] <= 0.0)) max_excess = std::isfinite(t.excess[k]) ? std::max(max_excess, t.excess[k]) : 1.0;
       }
-      return -most;
+      return -max_excess;
     };
     VoltageTrial inside = *inside_;
     const auto margin_at = [&](double voltage) {
@@ -165,7 +165,7 @@ class Search {
     };
     find_zero(margin_at, inside.voltage, margin(inside), outside.voltage, margin(outside),
               border_width * outside.voltage);
-    finding.most = frequency_at(inside);
+    finding.max_point = frequency_at(inside);
     return conclude(FrequencyOutcome::outside_domain, inside, finding);
   }
 
@@ -178,8 +178,8 @@ class Search {
   }
   FrequencySearch jumps() {
     SearchFinding finding = found(Finding::jumps);
-    finding.at = frequency_at(*high_);
-    finding.least = frequency_at(*low_);
+    finding.point = frequency_at(*high_);
+    finding.min_point = frequency_at(*low_);
     return conclude(FrequencyOutcome::jumps, *high_, finding);
   }
   FrequencySearch never_flaps() {
@@ -192,12 +192,12 @@ class Search {
   FrequencySearch too_high() {
     SearchFinding finding = found(Finding::too_high);
     finding.last_voltage = (ceiling_ ? *ceiling_ : *low_).voltage;
-    finding.most = frequency_at(*low_);
+    finding.max_point = frequency_at(*low_);
     return conclude(FrequencyOutcome::too_high, *low_, finding);
   }
   FrequencySearch too_low() {
     SearchFinding finding = found(low_ ? Finding::too_low_at_onset : Finding::too_low_at_first);
-    finding.at = frequency_at(*high_);
+    finding.point = frequency_at(*high_);
     if (low_) {
       finding.status = low_->status;
       finding.evidence = low_->evidence;

@@ -71,9 +71,9 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
                                                                    : torque;
       if (!(start > 0.0)) continue;
       trial.design.friction.coefficient = start;
-      const double most =
+      const double upper =
           law == FrictionLaw::load_proportional ? 2.0 * fit.design.transmission.crank_radius : 20.0 * start;
-      trial.parameters.push_back({parameter_of(key), 0.0, most, start});
+      trial.parameters.push_back({parameter_of(key), 0.0, upper, start});
     }
     FrictionCandidate candidate;
     candidate.law = law;

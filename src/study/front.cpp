@@ -15,19 +15,19 @@ class Area {
 
   void add(double x, double y) {
     if (!(x < x_ && y < y_)) return;
-    const auto at = std::lower_bound(steps_.begin(), steps_.end(), std::pair(x, y));
-    if (at != steps_.begin() && std::prev(at)->second <= y) return;
-    auto end = at;
+    const auto first = std::lower_bound(steps_.begin(), steps_.end(), std::pair(x, y));
+    if (first != steps_.begin() && std::prev(first)->second <= y) return;
+    auto end = first;
     while (end != steps_.end() && end->second >= y) ++end;
     // What lies between the staircase as it was and the new corner.
-    double left = x, top = at == steps_.begin() ? y_ : std::prev(at)->second;
-    for (auto step = at; step != end; ++step) {
+    double left = x, top = first == steps_.begin() ? y_ : std::prev(first)->second;
+    for (auto step = first; step != end; ++step) {
       value_ += (step->first - left) * (top - y);
       left = step->first;
       top = step->second;
     }
     value_ += ((end == steps_.end() ? x_ : end->first) - left) * (top - y);
-    steps_.insert(steps_.erase(at, end), {x, y});
+    steps_.insert(steps_.erase(first, end), {x, y});
   }
   double value() const { return value_; }
 

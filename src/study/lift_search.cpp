@@ -15,7 +15,7 @@ using detail::VoltageTrial;
 using detail::VoltageTrials;
 using Finding = SearchFinding::Kind;
 
-SearchFinding::Place lift_at(const VoltageTrial& t) { return {t.voltage, t.lift}; }
+SearchFinding::VoltagePoint lift_at(const VoltageTrial& t) { return {t.voltage, t.lift}; }
 
 /// The lift coefficient is a wave in the angle of attack: between two trials the smallest angle changes by no more than
 /// this share of a radian of the wave, so that no more than an eighth of it passes unseen.
@@ -67,11 +67,11 @@ class LiftTrace {
   double first_voltage() const {
     const Vehicle<double>& v = trials_.vehicle();
     if (!drive_of(v).rotates) return 0.2 * where_.nominal;
-    double most = 0.0;
+    double max_coefficient = 0.0;
     if (const auto& table = v.wings.coefficients.table) {
-      for (const double c : table->lift()) most = std::max(most, std::abs(c));
+      for (const double c : table->lift()) max_coefficient = std::max(max_coefficient, std::abs(c));
     } else {
-      most = std::abs(v.wings.coefficients.lift.offset) + std::abs(v.wings.coefficients.lift.amplitude);
+      max_coefficient = std::abs(v.wings.coefficients.lift.offset) + std::abs(v.wings.coefficients.lift.amplitude);
     }
     double slope = 0.0;
     for (int n = 0; n < 48; ++n) {
@@ -79,25 +79,25 @@ class LiftTrace {
       slope =
           std::max(slope, std::abs(crank_kinematics(v.transmission, std::sin(theta), std::cos(theta)).stroke_slope));
     }
-    const double omega = std::sqrt(2.0 * target_ / (v.wings.air_density * v.wings.s2 * most)) / slope;
+    const double omega = std::sqrt(2.0 * target_ / (v.wings.air_density * v.wings.s2 * max_coefficient)) / slope;
     return detail::unloaded_voltage(v, omega, breakaway_torque(v));
   }
 
   /// Well above what any lift in the range takes, and what starts the crank from any angle.
   double highest_voltage(double guess) const {
     const Vehicle<double>& v = trials_.vehicle();
-    double most = std::max(frequency_search_span * guess, 10.0 * where_.nominal);
+    double highest = std::max(frequency_search_span * guess, 10.0 * where_.nominal);
     const double fastest = highest_frequency(v, where_.range);
     if (std::isfinite(fastest)) {
-      most = std::max(most, 10.0 * detail::unloaded_voltage(v, two_pi * fastest, breakaway_torque(v)));
+      highest = std::max(highest, 10.0 * detail::unloaded_voltage(v, two_pi * fastest, breakaway_torque(v)));
     }
     if (drive_of(v).rotates) {
       const StaticBalance balance = static_balance(v);
       const double start =
           (balance.stall_torque - balance.advance_min) * circuit_resistance(v) / v.motor.torque_constant;
-      most = std::max(most, 10.0 * start);
+      highest = std::max(highest, 10.0 * start);
     }
-    return most;
+    return highest;
   }
 
   VoltageTrial at(double voltage) {
@@ -292,32 +292,32 @@ class LiftTrace {
     }
     if (!max_) {
       SearchFinding finding = found(Finding::out_of_range);
-      finding.at = lift_at(*first_);
+      finding.point = lift_at(*first_);
       finding.limits = first_->limits;
       return conclude(FrequencyOutcome::outside_domain, *first_, finding);
     }
     if (jump_low_) {
       SearchFinding finding = found(Finding::jumps);
-      finding.at = lift_at(*jump_high_);
-      finding.least = lift_at(*jump_low_);
+      finding.point = lift_at(*jump_high_);
+      finding.min_point = lift_at(*jump_low_);
       return conclude(FrequencyOutcome::jumps, *jump_high_, finding);
     }
     if (outside_root_) {
       SearchFinding finding = found(Finding::out_of_range);
-      finding.at = lift_at(*outside_root_);
+      finding.point = lift_at(*outside_root_);
       finding.limits = outside_root_->limits;
-      finding.least = lift_at(*min_);
-      finding.most = lift_at(*max_);
+      finding.min_point = lift_at(*min_);
+      finding.max_point = lift_at(*max_);
       return conclude(FrequencyOutcome::outside_domain, *max_, finding);
     }
     if (min_->lift > target_ && !below_) {
       SearchFinding finding = found(Finding::too_low_at_first);
-      finding.at = lift_at(*min_);
+      finding.point = lift_at(*min_);
       return conclude(FrequencyOutcome::too_low, *min_, finding);
     }
     if (min_->lift > target_) {
       SearchFinding finding = found(Finding::too_low_at_onset);
-      finding.at = lift_at(*first_);
+      finding.point = lift_at(*first_);
       finding.status = below_->status;
       finding.evidence = below_->evidence;
       FrequencySearch result = conclude(FrequencyOutcome::too_low, *first_, finding);
@@ -325,7 +325,7 @@ class LiftTrace {
       return result;
     }
     SearchFinding finding = found(Finding::too_high);
-    finding.most = lift_at(*max_);
+    finding.max_point = lift_at(*max_);
     finding.last_voltage = last.voltage;
     if (last.beyond && where_.range == SearchRange::domain) finding.limits = last.limits;
     return conclude(FrequencyOutcome::too_high, *max_, finding);

@@ -23,10 +23,10 @@ CycleMode mode_of(const Complex& multiplier, double period) {
 }
 
 /// Which rows of a matrix of full column rank, one for each column, are the most independent.
-std::vector<Index> pivot_rows(const Eigen::MatrixXcd& of) {
-  const Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> factors(of.adjoint());
+std::vector<Index> pivot_rows(const Eigen::MatrixXcd& matrix) {
+  const Eigen::ColPivHouseholderQR<Eigen::MatrixXcd> factors(matrix.adjoint());
   std::vector<Index> rows;
-  for (Index k = 0; k < of.cols(); ++k) rows.push_back(factors.colsPermutation().indices()[k]);
+  for (Index k = 0; k < matrix.cols(); ++k) rows.push_back(factors.colsPermutation().indices()[k]);
   std::sort(rows.begin(), rows.end());
   return rows;
 }
@@ -125,10 +125,10 @@ Linearisation linearise(const Design<double>& design, const RunOptions& options,
   const std::optional<FrequencySearch>& search = found.operating_point.search;
   if (search && search->outcome != FrequencyOutcome::reached) return found;
   if (found.operating_point.status != FlappingStatus::flapping) return found;
-  const Design<double>& at = found.operating_point.design;
-  const Vehicle<double> vehicle = resolve(at, options.condition);
-  found.orbit = find_steady_flapping(vehicle, {1e-10, true, reporting_of(at)}, start_up_in_time());
-  const CycleMap map = cycle_map(found.orbit, vehicle, at.supply);
+  const Design<double>& operated = found.operating_point.design;
+  const Vehicle<double> vehicle = resolve(operated, options.condition);
+  found.orbit = find_steady_flapping(vehicle, {1e-10, true, reporting_of(operated)}, start_up_in_time());
+  const CycleMap map = cycle_map(found.orbit, vehicle, operated.supply);
   if (!map.states.empty()) found.model = linear_model_of(map, cycles);
   return found;
 }

@@ -51,7 +51,7 @@ MomentCalibration calibrate_moments(const SpringPair& pair, Formulation formulat
     before = here;
   }
   if (!result.met) {
-    scale = highest_along([&](double x) { return -std::abs(excess(x)); }, low, -low, samples).at;
+    scale = highest_along([&](double x) { return -std::abs(excess(x)); }, low, -low, samples).argument;
   }
   if (!std::isfinite(scale)) return result;
   const auto peaks = peaks_at(scale);

@@ -26,7 +26,7 @@ struct Residuals {
 
 }  // namespace
 
-MotorFit::MotorFit(const MotorDatasheet& s, const std::vector<Datum>& of) : data(of) {
+MotorFit::MotorFit(const MotorDatasheet& s, const std::vector<Datum>& points) : data(points) {
   guess(s);
   choose_unknowns(s);
   if (electrical) fit();

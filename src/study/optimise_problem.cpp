@@ -82,8 +82,8 @@ DomainExcess OptimiseProblem::vehicle_slopes(const Vector& u, Eigen::Index k, co
   Vector up = u, down = u;
   up[k] = std::min(1.0, u[k] + step);
   down[k] = std::max(0.0, u[k] - step);
-  const auto excess = [&](const Vector& at) {
-    return domain_excess(resolve(design(at), study_.options.condition), metrics);
+  const auto excess = [&](const Vector& moved) {
+    return domain_excess(resolve(design(moved), study_.options.condition), metrics);
   };
   DomainExcess slopes = excess(up);
   const DomainExcess below = excess(down);

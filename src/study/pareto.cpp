@@ -161,12 +161,12 @@ class Archive {
   void fitness(std::size_t first, std::span<double> values) const {
     const std::size_t m = problem_.space.objectives;
     for (std::size_t k = first; k < result_.evaluated.size(); ++k) {
-      double* of = &values[(k - first) * m];
+      double* row = &values[(k - first) * m];
       if (result_.feasible[k]) {
         const ObjectivePoint p = problem_.objectives(result_.evaluated[k]);
-        for (std::size_t j = 0; j < m; ++j) of[j] = std::min((p[j] - low_[j]) / range_[j], infeasible_from);
+        for (std::size_t j = 0; j < m; ++j) row[j] = std::min((p[j] - low_[j]) / range_[j], infeasible_from);
       } else {
-        std::fill(of, of + m,
+        std::fill(row, row + m,
                   std::isfinite(violation_[k]) ? std::min(infeasible_from + violation_[k], not_flapping)
                                                : 2.0 * not_flapping);
       }

@@ -36,7 +36,7 @@ std::vector<Metrics<double>> metrics_of(const std::vector<EnsembleOutcome>& outc
 void run_along(TrendCurve& curve, const std::vector<double>& axis, bool frequency,
                const std::function<Design<double>(double)>& place) {
   std::vector<EnsembleMember> members;
-  std::vector<std::size_t> at;
+  std::vector<std::size_t> indices;
   for (std::size_t n = 0; n < axis.size(); ++n) {
     const Design<double> design = place(axis[n]);
     try {
@@ -44,15 +44,15 @@ void run_along(TrendCurve& curve, const std::vector<double>& axis, bool frequenc
     } catch (const ParameterError&) {
       continue;  // a rod shorter than its crank
     }
-    members.push_back({resolve(design, curve.of.condition), reporting_of(design)});
-    at.push_back(n);
+    members.push_back({resolve(design, curve.flapping_case.condition), reporting_of(design)});
+    indices.push_back(n);
   }
   std::vector<EnsembleOutcome> outcomes(members.size());
   const StartUp start_up = start_up_in_time();
   if (frequency) {
     std::vector<FrequencyOutcome> reached(members.size());
     std::vector<double> held;
-    for (const std::size_t n : at) held.push_back(axis[n]);
+    for (const std::size_t n : indices) held.push_back(axis[n]);
     solve_ensemble_at_frequency(members, held, ensemble_options(), start_up, outcomes, reached);
   } else {
     solve_ensemble(members, ensemble_options(), start_up, outcomes);
@@ -61,10 +61,10 @@ void run_along(TrendCurve& curve, const std::vector<double>& axis, bool frequenc
   none.values.fill(absent);
   curve.metrics.assign(axis.size(), none);
   curve.domain.assign(axis.size(), {});
-  for (std::size_t k = 0; k < at.size(); ++k) {
-    curve.metrics[at[k]] = outcomes[k].metrics;
+  for (std::size_t k = 0; k < indices.size(); ++k) {
+    curve.metrics[indices[k]] = outcomes[k].metrics;
     if (std::isfinite(outcomes[k].metrics[Metric::power_electrical])) {
-      curve.domain[at[k]] = domain_of(members[k].vehicle, outcomes[k].metrics);
+      curve.domain[indices[k]] = domain_of(members[k].vehicle, outcomes[k].metrics);
     }
   }
 }
@@ -84,7 +84,7 @@ CycleCase cycle_of(const SpringPair& pair, const FlappingCase& which, std::optio
   const CrankGeometry<double> geometry = geometry_of(resolve(result.run.design).transmission.slider_crank);
   for (const WaveformRow& row : result.run.cycle) {
     const auto k = crank_kinematics(geometry, std::sin(row.crank_angle), std::cos(row.crank_angle));
-    result.stored_power.push_back((row.rod_force * k.wing_lever - row.aero_moment) * row.flapping_velocity);
+    result.stored_power.push_back((row.rod_force * k.wing_jacobian - row.aero_moment) * row.flapping_velocity);
   }
   return result;
 }

@@ -166,9 +166,9 @@ void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t en
 void SweepSolver::fly(SweepColumns& columns, std::size_t row) const {
   const FlightMetrics wanted = flight_metrics(sweep_.options.metrics, sweep_.allow_extrapolation);
   if (!wanted.any()) return;
-  const SweepDesign of = design_at(sweep_, columns.first + row);
-  if (!has_battery(of.design.supply.type)) return;
-  const Endurance flight = endurance_of(of.design, of.condition, sweep_.options.tolerance, {}, wanted);
+  const SweepDesign point = design_at(sweep_, columns.first + row);
+  if (!has_battery(point.design.supply.type)) return;
+  const Endurance flight = endurance_of(point.design, point.condition, sweep_.options.tolerance, {}, wanted);
   for (std::size_t m = 0; m < kept_.size(); ++m) {
     if (Metric(kept_[m]) == Metric::hover) columns.metrics[m][row] = flight.hover;
     if (Metric(kept_[m]) == Metric::endurance) columns.metrics[m][row] = flight.time;

@@ -81,11 +81,11 @@ void describe(ToleranceOutput& output, std::span<const double> values) {
   output.mean = sum / double(there.size());
   for (const double x : there) squares += (x - output.mean) * (x - output.mean);
   output.deviation = there.size() > 1 ? std::sqrt(squares / double(there.size() - 1)) : absent;
-  output.least = there.front();
+  output.min = there.front();
   output.p025 = percentile(there, 0.025);
   output.median = percentile(there, 0.5);
   output.p975 = percentile(there, 0.975);
-  output.most = there.back();
+  output.max = there.back();
 }
 
 }  // namespace
@@ -184,9 +184,9 @@ Sweep tolerance_sweep(const ToleranceStudy& study) {
         }
         scores = roots[g] * scores;
         for (std::size_t i = 0; i < groups[g].size(); ++i) {
-          const Distribution& of = study.parameters[groups[g][i]].distribution;
+          const Distribution& distribution = study.parameters[groups[g][i]].distribution;
           axis.quantities[groups[g][i]].values[s * study.count + n] =
-              of.quantile(normal_probability(scores[Eigen::Index(i)]));
+              distribution.quantile(normal_probability(scores[Eigen::Index(i)]));
         }
       }
       if (together.empty()) continue;
@@ -217,13 +217,13 @@ Sweep tolerance_sweep(const ToleranceStudy& study) {
   return sweep;
 }
 
-Probability probability_of(std::uint64_t count, std::uint64_t of) {
+Probability probability_of(std::uint64_t count, std::uint64_t total) {
   // Wilson, JASA 22, 1927.
   static const double z = normal_quantile(0.975);
-  const double n = double(of), p = double(count) / n;
+  const double n = double(total), p = double(count) / n;
   const double middle = p + z * z / (2.0 * n), half = z * std::sqrt(p * (1.0 - p) / n + z * z / (4.0 * n * n));
   const double scale = 1.0 / (1.0 + z * z / n);
-  return {count, p, count == 0 ? 0.0 : scale * (middle - half), count == of ? 1.0 : scale * (middle + half)};
+  return {count, p, count == 0 ? 0.0 : scale * (middle - half), count == total ? 1.0 : scale * (middle + half)};
 }
 
 const ToleranceOutput* ToleranceResult::find(std::string_view name) const {

@@ -38,15 +38,15 @@ TrendPeak highest_along(const AlongTheWay& value, double from, double to, int sa
   TrendPeak peak{place(from, to, best, samples), values[std::size_t(best)], false};
   const bool left = best > 0 && std::isfinite(values[std::size_t(best - 1)]);
   const bool right = best + 1 < samples && std::isfinite(values[std::size_t(best + 1)]);
-  const double low = left ? place(from, to, best - 1, samples) : peak.at;
-  const double high = right ? place(from, to, best + 1, samples) : peak.at;
-  const auto [at, negative] = min_between([&](double x) { return -value(x); }, low, high);
+  const double low = left ? place(from, to, best - 1, samples) : peak.argument;
+  const double high = right ? place(from, to, best + 1, samples) : peak.argument;
+  const auto [argument, negative] = min_between([&](double x) { return -value(x); }, low, high);
   if (-negative > peak.value) {
-    peak.at = at;
+    peak.argument = argument;
     peak.value = -negative;
   }
-  const double margin = 2e-4 * std::abs(peak.at);
-  peak.inside = left && right && peak.at > low + margin && peak.at < high - margin;
+  const double margin = 2e-4 * std::abs(peak.argument);
+  peak.inside = left && right && peak.argument > low + margin && peak.argument < high - margin;
   return peak;
 }
 
@@ -55,14 +55,16 @@ TrendPeak dip_along(const AlongTheWay& value, double from, double to, int sample
   for (int n = 0; n < samples; ++n) values.push_back(value(place(from, to, n, samples)));
   int best = -1;
   for (int n = 1; n + 1 < samples; ++n) {
-    const auto at = [&](int k) { return values[std::size_t(k)]; };
-    if (at(n) <= at(n - 1) && at(n) < at(n + 1) && (best < 0 || at(n) < at(best))) best = n;
+    const auto value_of = [&](int k) { return values[std::size_t(k)]; };
+    if (value_of(n) <= value_of(n - 1) && value_of(n) < value_of(n + 1) && (best < 0 || value_of(n) < value_of(best)))
+      best = n;
   }
   constexpr double none = std::numeric_limits<double>::quiet_NaN();
   if (best < 0) return {none, none, false};
-  const auto [at, least] = min_between(value, place(from, to, best - 1, samples), place(from, to, best + 1, samples));
+  const auto [argument, least] =
+      min_between(value, place(from, to, best - 1, samples), place(from, to, best + 1, samples));
   if (values[std::size_t(best)] < least) return {place(from, to, best, samples), values[std::size_t(best)], true};
-  return {at, least, true};
+  return {argument, least, true};
 }
 
 double crossing_along(const AlongTheWay& value, double level, double from, double to, int samples) {

@@ -162,8 +162,8 @@ void CrankStartUp::jam(double theta) {
   if (stalls(wrap_angle(theta))) return;
   result_.jam_angle = wrap_angle(theta);
   const CrankKinematics<double> k = model_.kinematics(theta);
-  if (k.wing_lever <= 2.0 * CrankModel::smallest_margin * typical_lever(model_.vehicle.transmission)) {
-    result_.evidence = {.kind = Evidence::lever_vanishes, .angle = *result_.jam_angle, .lever = k.wing_lever};
+  if (k.wing_jacobian <= 2.0 * CrankModel::smallest_margin * typical_lever(model_.vehicle.transmission)) {
+    result_.evidence = {.kind = Evidence::lever_vanishes, .angle = *result_.jam_angle, .lever = k.wing_jacobian};
     return;
   }
   result_.evidence = {

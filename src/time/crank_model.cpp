@@ -15,7 +15,7 @@ constexpr double stiff_decays_per_cycle = 500.0;
 
 }  // namespace
 
-CrankModel::CrankModel(const Vehicle<double>& of, const Supply<double>& on) : vehicle(of), supply(on) {
+CrankModel::CrankModel(const Vehicle<double>& v, const Supply<double>& on) : vehicle(v), supply(on) {
   validate(vehicle.motor);
   validate(vehicle.transmission);
   validate(vehicle.friction);
@@ -92,9 +92,9 @@ Motion<double> CrankModel::motion(double t, const double* y, Branch<double>* use
   const double i = current_of(t, y), v_t = terminal_voltage(vehicle, voltage(t), i);
   const double N_k_beta = spring_moment(vehicle, k);
   const auto on_branch = [&] {
-    const Instant<double> at =
-        instant_at(vehicle, k, N_k_beta, y[1], i, v_t, branch.stroke, branch.direction, branch.pitching, branch.gear);
-    return motion_on(vehicle, at, i, v_t, branch);
+    const IntermediateTerms<double> terms =
+        terms_at(vehicle, k, N_k_beta, y[1], i, v_t, branch.stroke, branch.direction, branch.pitching, branch.gear);
+    return motion_on(vehicle, terms, i, v_t, branch);
   };
   branch.gear = 1.0;
   Motion<double> m = on_branch();
@@ -119,9 +119,9 @@ Motion<double> CrankModel::motion_now() const {
     m.aero.lift = standing_lift(y, wings);
     moment += wings.moment;
   }
-  m.rod_force = wingless ? 0.0 : moment / m.kinematics.wing_lever;
+  m.rod_force = wingless ? 0.0 : moment / m.kinematics.wing_jacobian;
   m.motor_torque = vehicle.motor.torque_constant * m.current;
-  m.friction_torque = m.motor_torque - m.rod_force * m.kinematics.crank_lever - vehicle.load_torque;
+  m.friction_torque = m.motor_torque - m.rod_force * m.kinematics.crank_jacobian - vehicle.load_torque;
   return m;
 }
 
@@ -141,7 +141,7 @@ bool CrankModel::rates(double t, const double* y, double* dy, bool quadrature) c
         case Integral::current: rate = i; break;
         case Integral::current_square: rate = square(i); break;
         case Integral::electrical_work: rate = i * terminal_voltage(vehicle, voltage(t), i); break;
-        case Integral::rod_force: rate = std::abs(spring_moment(vehicle, k) + wings.moment) / k.wing_lever; break;
+        case Integral::rod_force: rate = std::abs(spring_moment(vehicle, k) + wings.moment) / k.wing_jacobian; break;
         case Integral::aero_work: rate = wings.aero.power; break;
         case Integral::lift: rate = standing_lift(y, wings); break;
         default: break;
@@ -178,18 +178,18 @@ double CrankModel::static_force(const CrankKinematics<double>& k) const {
 /// the standing torques.
 double CrankModel::net_static_torque(double theta, double i) const {
   if (has_gear_loss(vehicle.motor)) {
-    const StandingTorques<double> at = standing_torques(theta);
-    return vehicle.motor.torque_constant * i - 0.5 * (at.low + at.high);
+    const StandingTorques<double> torques = standing_torques(theta);
+    return vehicle.motor.torque_constant * i - 0.5 * (torques.low + torques.high);
   }
   const CrankKinematics<double> k = kinematics(theta);
-  return vehicle.motor.torque_constant * i - static_force(k) * k.crank_lever - vehicle.load_torque;
+  return vehicle.motor.torque_constant * i - static_force(k) * k.crank_jacobian - vehicle.load_torque;
 }
 
 /// mu r_e |F_s| + T_c [N m]: what friction, and the gearbox with it, can hold at rest.
 double CrankModel::holding_torque(double theta) const {
   if (has_gear_loss(vehicle.motor)) {
-    const StandingTorques<double> at = standing_torques(theta);
-    return 0.5 * (at.high - at.low);
+    const StandingTorques<double> torques = standing_torques(theta);
+    return 0.5 * (torques.high - torques.low);
   }
   return wingbeat::holding_torque(vehicle, static_force(kinematics(theta)));
 }
@@ -280,10 +280,10 @@ std::array<double, CrankModel::indicator_count> CrankModel::indicators(double t,
   if (now.stuck) {
     values.fill(1.0);
     if (pitching) {
-      const StandingTorques<double> at = standing_torques(y);
+      const StandingTorques<double> torques = standing_torques(y);
       const double torque = vehicle.motor.torque_constant * current_of(t, y);
       values[standstill] =
-          std::min(at.high - torque, torque - at.low) / (vehicle.motor.torque_constant * current_scale);
+          std::min(torques.high - torque, torque - torques.low) / (vehicle.motor.torque_constant * current_scale);
       values[stop] = stop_room(t, y);
       values[turn] = now.held ? 1.0 : y[pitch_at() + 1] / pitch_velocity_scale;
       return values;
@@ -319,9 +319,9 @@ void CrankModel::begin_piece() {
     if (pitching) {
       double y[5];
       unknowns(y);
-      const StandingTorques<double> at = standing_torques(y);
-      net = vehicle.motor.torque_constant * now.i - 0.5 * (at.low + at.high);
-      hold = 0.5 * (at.high - at.low);
+      const StandingTorques<double> torques = standing_torques(y);
+      net = vehicle.motor.torque_constant * now.i - 0.5 * (torques.low + torques.high);
+      hold = 0.5 * (torques.high - torques.low);
     }
     now.branch.direction = sign_of(net);
     now.stuck = hold > 0.0 && std::abs(net) <= hold;
@@ -407,9 +407,9 @@ void CrankModel::tolerated(double relative, const double* y, double* errors) con
   errors[1] = relative * (std::abs(y[1]) + 0.01 * speed_scale);
   if (inductive) errors[2] = relative * (std::abs(y[2]) + 0.01 * current_scale);
   if (pitching) {
-    const std::size_t at = pitch_at();
-    errors[at] = relative * (std::abs(y[at]) + 0.01 * pitch_scale);
-    errors[at + 1] = relative * (std::abs(y[at + 1]) + 0.01 * pitch_velocity_scale);
+    const std::size_t pitch = pitch_at();
+    errors[pitch] = relative * (std::abs(y[pitch]) + 0.01 * pitch_scale);
+    errors[pitch + 1] = relative * (std::abs(y[pitch + 1]) + 0.01 * pitch_velocity_scale);
   }
 }
 

@@ -38,13 +38,13 @@ class CrankModel {
 
     /// Calls use(number) for each of them.
     template <class Self, class Use>
-    static void each(Self& of, const Use& use) {
-      use(of.t), use(of.theta), use(of.omega), use(of.i);
-      use(of.branch.stroke), use(of.branch.force), use(of.branch.direction), use(of.branch.stored_power);
-      use(of.branch.pitching), use(of.branch.gear), use(of.force_branch_known);
-      use(of.switched_voltage), use(of.stuck), use(of.jammed), use(of.switches);
-      use(of.psi), use(of.pitch_velocity), use(of.held), use(of.impact_loss);
-      for (auto& x : of.impulses) use(x);
+    static void each(Self& self, const Use& use) {
+      use(self.t), use(self.theta), use(self.omega), use(self.i);
+      use(self.branch.stroke), use(self.branch.force), use(self.branch.direction), use(self.branch.stored_power);
+      use(self.branch.pitching), use(self.branch.gear), use(self.force_branch_known);
+      use(self.switched_voltage), use(self.stuck), use(self.jammed), use(self.switches);
+      use(self.psi), use(self.pitch_velocity), use(self.held), use(self.impact_loss);
+      for (auto& x : self.impulses) use(x);
     }
   };
   /// Functions of the state whose sign changes are events.

@@ -42,10 +42,10 @@ double CrankModel::standing_lift(const double* y, const WingsAtPitch<double>& wi
 double CrankModel::uniqueness_at(const double* y) const {
   if (!pitching) return uniqueness(vehicle, y[0]);
   const CrankKinematics<double> k = kinematics(y[0]);
-  const double lever = k.wing_lever / typical_lever(vehicle.transmission);
+  const double lever = k.wing_jacobian / typical_lever(vehicle.transmission);
   if (!(lever > 0.0)) return lever;
-  const double A = wings_standing(y).inertia * k.stroke_slope / k.wing_lever, radius = vehicle.friction.radius;
-  const double least = rotor_inertia() + std::min(A * (k.crank_lever + radius), A * (k.crank_lever - radius));
+  const double A = wings_standing(y).inertia * k.stroke_slope / k.wing_jacobian, radius = vehicle.friction.radius;
+  const double least = rotor_inertia() + std::min(A * (k.crank_jacobian + radius), A * (k.crank_jacobian - radius));
   return std::min(lever, least / vehicle.motor.inertia);
 }
 
@@ -62,14 +62,15 @@ double CrankModel::least_inertia_now() const {
 
 StandingTorques<double> CrankModel::standing_torques(const double* y) const {
   const CrankKinematics<double> k = kinematics(y[0]);
-  return wingbeat::standing_torques(vehicle, k, (spring_moment(vehicle, k) + wings_standing(y).moment) / k.wing_lever);
+  return wingbeat::standing_torques(vehicle, k,
+                                    (spring_moment(vehicle, k) + wings_standing(y).moment) / k.wing_jacobian);
 }
 
 double CrankModel::pitch_energy(double stroke_velocity) const {
   if (!pitching) return 0.0;
-  const PitchState<double> at = pitch_state(now.psi, now.pitch_velocity, stroke_velocity);
+  const PitchState<double> state = pitch_state(now.psi, now.pitch_velocity, stroke_velocity);
   return hinge_loads(vehicle.pitch.hinge, now.psi, now.pitch_velocity).energy +
-         kinetic_energy(pitch_inertia(vehicle.pitch, 0.0, at), at);
+         kinetic_energy(pitch_inertia(vehicle.pitch, 0.0, state), state);
 }
 
 void CrankModel::resume() {
@@ -91,13 +92,13 @@ void CrankModel::meet_stop() {
   const auto impact = [&](double direction, double left) {
     return stop_impact(vehicle, vehicle.pitch, k, now.omega, now.psi, now.pitch_velocity, direction, left);
   };
-  const auto pass = [&](const StopImpact<double>& of, double left) {
-    now.omega += of.shaft_speed;
+  const auto pass = [&](const StopImpact<double>& passed, double left) {
+    now.omega += passed.shaft_speed;
     now.pitch_velocity = left;
-    now.impact_loss += of.stop_work;
-    const CycleIntegrals<double> at_once = wingbeat::impulses(of);
+    now.impact_loss += passed.stop_work;
+    const CycleIntegrals<double> at_once = wingbeat::impulses(passed);
     for (std::size_t q = 0; q < at_once.size(); ++q) now.impulses[q] += at_once[q];
-    if (of.shaft_speed != 0.0) now.stuck = false;
+    if (passed.shaft_speed != 0.0) now.stuck = false;
   };
   if (now.omega != 0.0) {
     const double direction = sign_of(now.omega);
@@ -112,7 +113,7 @@ void CrankModel::meet_stop() {
   }
   if (now.omega == 0.0 && now.pitch_velocity != 0.0) {
     const double coupling = (vehicle.pitch.mass_product + vehicle.pitch.air.rp) * std::cos(now.psi);
-    const double direction = sign_of(coupling * now.pitch_velocity * k.crank_lever);
+    const double direction = sign_of(coupling * now.pitch_velocity * k.crank_jacobian);
     const StopImpact<double> turning = impact(direction, 0.0);
     pass(direction * turning.shaft_speed > 0.0
              ? turning

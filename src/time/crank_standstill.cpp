@@ -14,12 +14,12 @@ void CrankStartUp::stand() {
   now_.stuck = false;
   double load, hold;
   if (has_gear_loss(model_.vehicle.motor)) {
-    const StandingTorques<double> at = model_.standing_torques(now_.theta);
-    load = 0.5 * (at.low + at.high);
-    hold = 0.5 * (at.high - at.low);
+    const StandingTorques<double> torques = model_.standing_torques(now_.theta);
+    load = 0.5 * (torques.low + torques.high);
+    hold = 0.5 * (torques.high - torques.low);
   } else {
     const CrankKinematics<double> k = model_.kinematics(now_.theta);
-    load = model_.static_force(k) * k.crank_lever + model_.vehicle.load_torque;
+    load = model_.static_force(k) * k.crank_jacobian + model_.vehicle.load_torque;
     hold = model_.vehicle.friction.radius * std::abs(model_.static_force(k)) + model_.constant_friction;
   }
   const double K = model_.vehicle.motor.torque_constant;
@@ -112,7 +112,7 @@ bool CrankStartUp::stick(double low, double high) {
 }
 
 /// Of the motor that stands since now_ [A], before any switching of the supply.
-double CrankStartUp::standing_current(double at) const {
+double CrankStartUp::standing_current(double theta) const {
   const double R = circuit_resistance(model_.vehicle);
   const double tau = model_.vehicle.motor.armature_inductance / R;
   const auto forced = [&](double t) {
@@ -120,7 +120,8 @@ double CrankStartUp::standing_current(double at) const {
     const double angular = two_pi * model_.supply.frequency, lag = std::atan(angular * tau);
     return model_.supply.voltage / R * std::cos(lag) * std::sin(angular * t - lag);
   };
-  return model_.inductive ? forced(at) + (now_.i - forced(now_.t)) * std::exp(-(at - now_.t) / tau) : forced(at);
+  return model_.inductive ? forced(theta) + (now_.i - forced(now_.t)) * std::exp(-(theta - now_.t) / tau)
+                          : forced(theta);
 }
 
 /// Lets the current of the standing motor run on to the time `until`, before any switching of the supply.
@@ -132,8 +133,8 @@ void CrankStartUp::relax(double until) {
     double charge = 0.0, heat = 0.0, work = 0.0;
     if (model_.supply.type == SupplyType::sine) {
       constexpr double node = 0.77459666924148337704;  // three-point Gauss; spans are 1/64 of a drive period at most
-      for (const auto& [at, weight] : {std::pair{-node, 5.0 / 18.0}, {0.0, 4.0 / 9.0}, {node, 5.0 / 18.0}}) {
-        const double t = start + 0.5 * span * (1.0 + at);
+      for (const auto& [position, weight] : {std::pair{-node, 5.0 / 18.0}, {0.0, 4.0 / 9.0}, {node, 5.0 / 18.0}}) {
+        const double t = start + 0.5 * span * (1.0 + position);
         charge += weight * span * current(t);
         heat += weight * span * square(current(t));
         work += weight * span * current(t) * terminal_voltage(model_.vehicle, model_.voltage(t), current(t));

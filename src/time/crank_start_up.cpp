@@ -230,8 +230,9 @@ void CrankStartUp::slide() {
       }
       if (steps.found(root_standstill)) {
         if (now_.stuck) {
-          const StandingTorques<double> at = model_.standing_torques(y);
-          now_.branch.direction = sign_of(2.0 * model_.vehicle.motor.torque_constant * now_.i - at.low - at.high);
+          const StandingTorques<double> torques = model_.standing_torques(y);
+          now_.branch.direction =
+              sign_of(2.0 * model_.vehicle.motor.torque_constant * now_.i - torques.low - torques.high);
           now_.stuck = false;
           breaks_away_ = true;
           event(Kind::breakaway);
@@ -306,10 +307,10 @@ void CrankStartUp::step_taken(Integrator& steps, double from) {
     while (last > 0 && int(result_.cycle.size()) <= last) {
       const double since = crossings_.back().cycle * double(result_.cycle.size()) / last;
       if (measured_from_ + since > now_.t + 1e-6 * crossings_.back().cycle) break;
-      const double* at = steps.dense(std::min(measured_from_ + since, now_.t));
-      const Motion<double> m = model_.motion(measured_from_ + since, at);
-      result_.cycle.push_back(waveform_row(model_.vehicle, m, since, at[0] - measured_angle_, at[1],
-                                           stroke_angle(m.kinematics), at[model_.pitch_at()]));
+      const double* state = steps.dense(std::min(measured_from_ + since, now_.t));
+      const Motion<double> m = model_.motion(measured_from_ + since, state);
+      result_.cycle.push_back(waveform_row(model_.vehicle, m, since, state[0] - measured_angle_, state[1],
+                                           stroke_angle(m.kinematics), state[model_.pitch_at()]));
     }
   }
   recorder_.step_taken({now_.t, now_.theta, now_.omega, now_.i}, [&](double t) {

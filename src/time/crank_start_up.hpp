@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "time/crank_model.hpp"
-#include "time/crank_pitch_reading.hpp"
+#include "time/crank_pitch_samples.hpp"
 #include "time/integrator.hpp"
 #include "time/recorder.hpp"
 #include "time/transient_tools.hpp"
@@ -38,7 +38,7 @@ class CrankStartUp {
   void stand_while_wings_pitch();
   void meet_or_leave_stop();
   bool stick(double low, double high);
-  double standing_current(double at) const;
+  double standing_current(double theta) const;
   void relax(double until);
   void step_taken(Integrator& steps, double from);
   void track_inrush(Integrator& steps, double from);
@@ -106,7 +106,7 @@ class CrankStartUp {
   double variation_ = 0.0, energy_mark_ = 0.0, motor_mark_ = 0.0, stored_mark_ = 0.0;
   CycleIntegrals<double> impulses_mark_{};
   CycleExtremes<double> extremes_{};
-  CrankPitchReading pitching_;
+  CrankPitchSamples pitching_;
   double measured_from_ = 0.0, measured_angle_ = 0.0;  // time and crank angle
   double stuck_until_ =
       std::numeric_limits<double>::infinity();  ///< what a crank has not left by then, it never leaves

@@ -12,7 +12,7 @@ constexpr double stiff_decays_per_period = 500.0;
 
 }  // namespace
 
-DirectModel::DirectModel(const Vehicle<double>& of) : DrivenShaft(of), coupled(inductive ? 3 : 2) {}
+DirectModel::DirectModel(const Vehicle<double>& v) : DrivenShaft(v), coupled(inductive ? 3 : 2) {}
 
 void DirectModel::start(double beta, double speed, double current) {
   now = {};
@@ -48,14 +48,14 @@ Motion<double> DirectModel::motion(double t, const double* y) const {
   const double i = current_of(t, y), v = voltage(t), springs = springs_of(y[0]);
   const Branch<double> branch = branch_at(y);
   const double omega = now.stuck ? 0.0 : y[1];
-  const Instant<double> at = instant_at(vehicle, direct_kinematics<double>(), springs, omega, i, v, branch.stroke,
-                                        branch.direction, branch.pitching);
-  Motion<double> m = motion_on(vehicle, at, i, v, branch);
+  const IntermediateTerms<double> terms = terms_at(vehicle, direct_kinematics<double>(), springs, omega, i, v,
+                                                   branch.stroke, branch.direction, branch.pitching);
+  Motion<double> m = motion_on(vehicle, terms, i, v, branch);
   if (now.stuck) {
     m.crank_acceleration = m.stroke_acceleration = 0.0;
     m.rod_force = m.stored_moment = springs;
-    m.motor_torque = at.motor.torque;
-    m.friction_torque = at.motor.torque - springs - vehicle.load_torque;
+    m.motor_torque = terms.motor.torque;
+    m.friction_torque = terms.motor.torque - springs - vehicle.load_torque;
   }
   return m;
 }

@@ -27,8 +27,8 @@ class DirectModel : public DrivenShaft {
 
     /// Calls use(number) for each of them.
     template <class Self, class Use>
-    static void each(Self& of, const Use& use) {
-      use(of.t), use(of.y[0]), use(of.y[1]), use(of.y[2]), use(of.stuck), use(of.direction);
+    static void each(Self& self, const Use& use) {
+      use(self.t), use(self.y[0]), use(self.y[1]), use(self.y[2]), use(self.stuck), use(self.direction);
     }
   };
   /// Functions of the state whose sign changes are events: of the motion, the speed or, where the shaft is stuck, what

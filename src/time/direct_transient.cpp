@@ -8,7 +8,7 @@
 #include "time/direct_model.hpp"
 #include "time/integrator.hpp"
 #include "time/model_problem.hpp"
-#include "time/period_reading.hpp"
+#include "time/period_averages.hpp"
 #include "time/pitch_direct_model.hpp"
 #include "time/recorder.hpp"
 #include "time/transient_tools.hpp"
@@ -79,7 +79,7 @@ class DirectStartUp {
   double travel_[2] = {}, last_travel_ = infinity;  ///< of this period: backwards, forwards; the longer of the last
   int creeping_ = 0;                                ///< periods so far
   double before_[5] = {};
-  PeriodReading<Model> reading_;
+  PeriodAverages<Model> reading_;
   std::vector<double> changes_;
 };
 
@@ -214,9 +214,9 @@ void DirectStartUp<Model>::step_taken(Integrator& steps, double from) {
     reading_.step_taken(model_, steps, from);
     const int last = options_.cycle_rows - 1;
     while (last > 0 && int(result_.cycle.size()) <= last) {
-      const double at = model_.period * (result_.cycles + double(result_.cycle.size()) / last);
-      if (at > now_.t + 1e-12 * model_.period) break;
-      result_.cycle.push_back(row(std::min(at, now_.t), steps.dense(std::min(at, now_.t))));
+      const double row_time = model_.period * (result_.cycles + double(result_.cycle.size()) / last);
+      if (row_time > now_.t + 1e-12 * model_.period) break;
+      result_.cycle.push_back(row(std::min(row_time, now_.t), steps.dense(std::min(row_time, now_.t))));
     }
   }
   recorder_.step_taken({now_.t, now_.y[0], now_.y[1], model_.current_of(now_.t, now_.y)}, [&](double t) {

@@ -18,7 +18,7 @@ struct DrivenShaft {
   std::function<double(double t)> command;  ///< the voltage that drives in the supply's place [V], where there is one
 
   /// Throws ParameterError for numbers out of range.
-  explicit DrivenShaft(const Vehicle<double>& of) : vehicle(of) {
+  explicit DrivenShaft(const Vehicle<double>& v) : vehicle(v) {
     validate(vehicle.motor);
     validate(vehicle.friction);
     validate(vehicle.spring);

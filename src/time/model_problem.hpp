@@ -20,8 +20,8 @@ IntegratorProblem problem_of(const Model& model, const double& relative) {
   p.stiff = model.stiff();
   p.rates = [&](double t, const double* y, double* dy) { return model.rates(t, y, dy, false); };
   p.root_functions = [&](double t, const double* y, double* values) {
-    const auto at = model.indicators(t, y);
-    std::copy(at.begin(), at.end(), values);
+    const auto indicators = model.indicators(t, y);
+    std::copy(indicators.begin(), indicators.end(), values);
   };
   p.tolerated = [&](const double* y, double* errors) { model.tolerated(relative, y, errors); };
   p.longest_step = model.longest_step();

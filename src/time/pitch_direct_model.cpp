@@ -10,7 +10,7 @@ constexpr double stiff_pitch_decays_per_period = 500.0;
 
 }  // namespace
 
-PitchDirectModel::PitchDirectModel(const Vehicle<double>& of) : DrivenShaft(of), coupled(inductive ? 5 : 4) {
+PitchDirectModel::PitchDirectModel(const Vehicle<double>& v) : DrivenShaft(v), coupled(inductive ? 5 : 4) {
   validate(vehicle.pitch, vehicle.wing_count * vehicle.wing_inertia);
   start({});
 }
@@ -132,8 +132,8 @@ bool PitchDirectModel::stiff() const {
 
 double PitchDirectModel::stored_energy() const {
   const double* y = now.y;
-  const PitchState<double> at = pitch_state(y[2], y[3], y[1]);
-  return kinetic_energy(pitch_inertia(vehicle.pitch, inertia, at), at) +
+  const PitchState<double> state = pitch_state(y[2], y[3], y[1]);
+  return kinetic_energy(pitch_inertia(vehicle.pitch, inertia, state), state) +
          0.5 * vehicle.wing_count * vehicle.spring.stiffness * square(y[0]) +
          hinge_loads(vehicle.pitch.hinge, y[2], y[3]).energy +
          0.5 * vehicle.motor.armature_inductance * square(current_of(now.t, y));

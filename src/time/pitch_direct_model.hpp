@@ -32,10 +32,10 @@ class PitchDirectModel : public DrivenShaft {
 
     /// Calls use(number) for each of them.
     template <class Self, class Use>
-    static void each(Self& of, const Use& use) {
-      use(of.t), use(of.y[0]), use(of.y[1]), use(of.y[2]), use(of.y[3]), use(of.y[4]), use(of.held);
-      use(of.impact_loss);
-      for (auto& x : of.impulses) use(x);
+    static void each(Self& self, const Use& use) {
+      use(self.t), use(self.y[0]), use(self.y[1]), use(self.y[2]), use(self.y[3]), use(self.y[4]), use(self.held);
+      use(self.impact_loss);
+      for (auto& x : self.impulses) use(x);
     }
   };
   /// Functions of the state whose sign changes are events: room to the stop or, of wings that it holds, how they press

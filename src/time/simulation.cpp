@@ -74,7 +74,7 @@ struct EventWatch {
 /// Leaves the model where it was where an exception ends what is done to it.
 template <class Model>
 struct BackUnlessDone {
-  explicit BackUnlessDone(Model& of) : model(of), before(of.now) {}
+  explicit BackUnlessDone(Model& restored) : model(restored), before(restored.now) {}
   ~BackUnlessDone() {
     if (!done) model.now = before;
   }
@@ -115,7 +115,7 @@ struct Simulation::Model {
       line = [v = next == 0 ? voltages.front() : voltages.back()](double) { return v; };
     } else {
       const double t0 = times[next - 1], v0 = voltages[next - 1], slope = (voltages[next] - v0) / (times[next] - t0);
-      line = [=](double at) { return v0 + slope * (at - t0); };
+      line = [=](double time) { return v0 + slope * (time - t0); };
     }
     return until;
   }

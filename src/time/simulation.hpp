@@ -15,23 +15,23 @@ namespace wingbeat::detail {
 /// them. `now` is everything that moves; all else is fixed by start().
 template <class M>
 concept TimeModel = std::copyable<typename M::State> &&
-                    requires(M m, const M& fixed, double t, double* y, const double* at, std::size_t k) {
+                    requires(M m, const M& fixed, double t, double* y, const double* states, std::size_t k) {
                       { m.now } -> std::same_as<typename M::State&>;
                       { fixed.coupled } -> std::convertible_to<int>;  // number of unknowns
                       { fixed.ended() } -> std::same_as<bool>;        // it cannot go on
                       m.begin_piece();                                // decides on what branch it goes on
                       fixed.unknowns(y);
-                      m.set(t, at);
-                      { fixed.rates(t, at, y, false) } -> std::same_as<bool>;
+                      m.set(t, states);
+                      { fixed.rates(t, states, y, false) } -> std::same_as<bool>;
                       { M::indicator_count } -> std::convertible_to<std::size_t>;
-                      { fixed.indicators(t, at)[k] } -> std::convertible_to<double>;
+                      { fixed.indicators(t, states)[k] } -> std::convertible_to<double>;
                       { fixed.directions()[k] } -> std::convertible_to<int>;  // which sign changes of them count
                       m.handle(k);                                            // one of them has changed its sign
                       { fixed.event_at(k) } -> std::same_as<std::optional<TransientEvent::Kind>>;
                       { m.branch_lost() } -> std::same_as<bool>;  // the branch was not the one it is on
                       { fixed.next_switch() } -> std::convertible_to<double>;
                       m.switch_supply();
-                      fixed.tolerated(1e-6, at, y);
+                      fixed.tolerated(1e-6, states, y);
                       { fixed.typical()[k] } -> std::convertible_to<double>;
                       { fixed.longest_step() } -> std::convertible_to<double>;
                       { fixed.stiff() } -> std::same_as<bool>;

@@ -44,22 +44,22 @@ inline double metrics_apart(const Metrics<double>& m, const Metrics<double>& oth
 template <class Candidates>
 void raise_extremes(const Candidates& candidates, double from, double to, int intervals,
                     CycleExtremes<double>& extremes) {
-  constexpr int fewest = 4, most = 128;
-  intervals = std::clamp(intervals, fewest, most);
+  constexpr int min_intervals = 4, max_intervals = 128;
+  intervals = std::clamp(intervals, min_intervals, max_intervals);
   const double spacing = (to - from) / intervals;
   if (!(spacing > 0.0)) return;
-  CycleExtremes<double> at[most + 1];
-  for (int k = 0; k <= intervals; ++k) at[k] = candidates(k == intervals ? to : from + k * spacing);
+  CycleExtremes<double> samples[max_intervals + 1];
+  for (int k = 0; k <= intervals; ++k) samples[k] = candidates(k == intervals ? to : from + k * spacing);
   for (std::size_t e = 0; e < extreme_count; ++e) {
     double& best = extremes[e];
     int top = 0;
     for (int k = 0; k <= intervals; ++k) {
-      if (at[k][e] > at[top][e]) top = k;
+      if (samples[k][e] > samples[top][e]) top = k;
     }
     const int middle = std::clamp(top, 1, intervals - 1);
-    const double a = at[middle - 1][e], b = at[middle][e], c = at[middle + 1][e];
+    const double a = samples[middle - 1][e], b = samples[middle][e], c = samples[middle + 1][e];
     const double bend = a - 2.0 * b + c;
-    best = std::max(best, at[top][e]);
+    best = std::max(best, samples[top][e]);
     if (bend >= 0.0) continue;
     const double vertex = 0.5 * (a - c) / bend;  // in spacings from the middle
     const double height = b - 0.125 * square(a - c) / bend;

@@ -54,10 +54,10 @@ const std::vector<std::string> commands = {"run",       "compare",  "sweep",    
 TEST_F(CommandLine, EveryHelpExampleWorksAsTyped) {
   for (const std::string& command : commands) {
     const std::string help = run({command, "--help"}).out;
-    const auto at = help.find("Example:\n");
-    ASSERT_NE(at, std::string::npos) << command;
+    const auto position = help.find("Example:\n");
+    ASSERT_NE(position, std::string::npos) << command;
     std::string example;
-    for (const std::string& line : lines_of(help.substr(at + 9))) {
+    for (const std::string& line : lines_of(help.substr(position + 9))) {
       if (line.empty()) break;
       example += line + "\n";
     }
@@ -127,9 +127,9 @@ TEST_F(CommandLine, ThreadsAreAWholeNumberFromOne) {
 TEST_F(CommandLine, EveryErrorOfAVehicleFileIsSaidAtItsPlace) {
   std::string text = read(plain);
   const auto replace = [&](const std::string& from, const std::string& to) {
-    const auto at = text.find(from);
-    ASSERT_NE(at, std::string::npos) << from;
-    text.replace(at, from.size(), to);
+    const auto position = text.find(from);
+    ASSERT_NE(position, std::string::npos) << from;
+    text.replace(position, from.size(), to);
   };
   replace("voltage = \"3 V\"", "voltage = \"3 A\"");
   replace("torque_constant = \"0.01 N m/A\"", "torque_constan = \"0.01 N m/A\"");

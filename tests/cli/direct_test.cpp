@@ -90,8 +90,8 @@ TEST_F(Direct, ToleranceOfAHeldVoltage) {
   ASSERT_EQ(o.status, 0) << o.err;
   const Json json = o.json();
   const double mean = json["outputs"]["lift_mean_n"]["mean"].get<double>();
-  const Json at = run({"run", direct, "--json", "--set", "supply.amplitude=4 V"}).json();
-  EXPECT_NEAR(mean / at["lift_mean_n"].get<double>(), 1.0, 0.1);
+  const Json result = run({"run", direct, "--json", "--set", "supply.amplitude=4 V"}).json();
+  EXPECT_NEAR(mean / result["lift_mean_n"].get<double>(), 1.0, 0.1);
 }
 
 TEST_F(Direct, FitReturnsWhatTheLogWasMadeWith) {

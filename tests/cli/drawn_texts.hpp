@@ -45,8 +45,8 @@ inline std::string without_markup(std::string_view xml) {
   }
   for (const auto& [entity, plain] :
        {std::pair{"&lt;", "<"}, {"&gt;", ">"}, {"&quot;", "\""}, {"&#39;", "'"}, {"&amp;", "&"}}) {
-    for (auto at = text.find(entity); at != std::string::npos; at = text.find(entity, at + 1)) {
-      text.replace(at, std::string_view(entity).size(), plain);
+    for (auto position = text.find(entity); position != std::string::npos; position = text.find(entity, position + 1)) {
+      text.replace(position, std::string_view(entity).size(), plain);
     }
   }
   return text;
@@ -69,8 +69,8 @@ inline DrawnPage page_of(const std::string& svg) {
   if (std::sscanf(box.c_str(), "0 0 %lf %lf", &page.width, &page.height) != 2) {
     throw std::invalid_argument("no viewBox: " + box);
   }
-  for (auto at = svg.find("<text"); at != std::string::npos; at = svg.find("<text", at + 1)) {
-    const auto group = svg.rfind("<g ", at), open = svg.find('>', at), close = svg.find("</text>", open);
+  for (auto position = svg.find("<text"); position != std::string::npos; position = svg.find("<text", position + 1)) {
+    const auto group = svg.rfind("<g ", position), open = svg.find('>', position), close = svg.find("</text>", open);
     const std::string_view tag = std::string_view(svg).substr(group, svg.find('>', group) - group);
     const std::string transform = attribute(tag, "transform");
     double x = 0.0, y = 0.0;

@@ -14,8 +14,8 @@ class DrawnWing : public Program {
   std::string file_with(const std::string& lines) const {
     std::string text = read(plain);
     for (const char* key : {"\ninertia", "\nplanform"}) {
-      const auto at = text.find(key, text.find("[wing]\n"));
-      text.erase(at, text.find('\n', at + 1) - at);
+      const auto position = text.find(key, text.find("[wing]\n"));
+      text.erase(position, text.find('\n', position + 1) - position);
     }
     text.insert(text.find("[wing]\n") + 7, lines);
     std::ofstream(path("drawn.toml")) << text;

@@ -27,8 +27,8 @@ class ExportFmu : public Program {
   }
 
   /// What an importer prints, a number a line.
-  std::vector<double> told(const std::string& command) const {
-    const std::string out = path("told.txt");
+  std::vector<double> imported(const std::string& command) const {
+    const std::string out = path("imported.txt");
     EXPECT_EQ(std::system((command + " > " + out).c_str()), 0) << command;
     std::ifstream in(out);
     return {std::istream_iterator<double>(in), {}};
@@ -58,8 +58,8 @@ TEST_F(ExportFmu, ImportersInCRunBothKinds) {
     const std::string counts =
         std::to_string(count_of(text, " derivative=\"")) + " " +
         (second ? found(text, "numberOfEventIndicators=\"([0-9]+)\"") : std::to_string(count_of(text, "<EventIndic")));
-    const auto co = told(FMU_IMPORTER " " + inputs + "0.5 0.01 " + references);
-    const auto me = told(FMU_CVODE_IMPORTER " " + inputs + counts + " 0.5 1e-8 " + references);
+    const auto co = imported(FMU_IMPORTER " " + inputs + "0.5 0.01 " + references);
+    const auto me = imported(FMU_CVODE_IMPORTER " " + inputs + counts + " 0.5 1e-8 " + references);
     ASSERT_EQ(co.size(), 2u);
     ASSERT_EQ(me.size(), 3u);
     for (std::size_t k = 0; k < 2; ++k) {

@@ -135,9 +135,9 @@ std::pair<double, double> reach_of(const std::string& svg, const std::string& cu
   const auto path = svg.find(" d='", group);
   double low = 1e9, high = -1e9;
   const std::string points = svg.substr(path + 4, svg.find('\'', path + 4) - path - 4);
-  for (std::size_t at = 0; at != std::string::npos; at = points.find_first_of("ML ", at + 1)) {
+  for (std::size_t position = 0; position != std::string::npos; position = points.find_first_of("ML ", position + 1)) {
     double x = 0.0, y = 0.0;
-    if (std::sscanf(points.c_str() + at, "%*[ML ]%lf,%lf", &x, &y) != 2) continue;
+    if (std::sscanf(points.c_str() + position, "%*[ML ]%lf,%lf", &x, &y) != 2) continue;
     low = std::min(low, x);
     high = std::max(high, x);
   }

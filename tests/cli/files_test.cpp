@@ -54,9 +54,9 @@ double time_mean(const Columns& c, const std::vector<double>& y) {
 }
 
 double largest(const std::vector<double>& y) {
-  double most = 0.0;
-  for (const double x : y) most = std::max(most, std::abs(x));
-  return most;
+  double highest = 0.0;
+  for (const double x : y) highest = std::max(highest, std::abs(x));
+  return highest;
 }
 
 class Files : public Program {
@@ -107,19 +107,19 @@ TEST_F(Files, WaveformsHoldVoltageAndTheMomentsOfTheWings) {
     const bool is_direct = vehicle.front() == direct_drive;
     const Columns c = read_csv(path("w.csv"), is_direct);
     const double stiffness = is_direct ? 0.0 : 2.0 * 1.377e-3;
-    double most = 0.0, volts = 0.0;
+    double highest = 0.0, volts = 0.0;
     for (std::size_t k = 0; k < c.at("time_s").size(); ++k) {
       if (!is_direct) {
         EXPECT_NEAR(c.at("spring_moment_nm")[k], stiffness * c.at("stroke_angle_rad")[k], 1e-12);
       }
       EXPECT_NEAR(c.at("power_electrical_w")[k], c.at("voltage_v")[k] * c.at("current_a")[k], 1e-12);
       volts = std::max(volts, std::abs(c.at("voltage_v")[k]));
-      most = std::max(most, std::abs(c.at("inertial_moment_nm")[k]));
+      highest = std::max(highest, std::abs(c.at("inertial_moment_nm")[k]));
     }
     EXPECT_NEAR(volts / o.json()["voltage_v"].get<double>(), 1.0, 1e-4);
     // Over a cycle the stroke velocity returns: the inertial moment has no mean.
-    EXPECT_GT(most, 1e-4);
-    EXPECT_NEAR(time_mean(c, c.at("inertial_moment_nm")) / most, 0.0, 2e-3);
+    EXPECT_GT(highest, 1e-4);
+    EXPECT_NEAR(time_mean(c, c.at("inertial_moment_nm")) / highest, 0.0, 2e-3);
   }
 }
 

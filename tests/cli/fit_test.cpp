@@ -94,7 +94,8 @@ class WrongUnit : public Fit {
     fs::copy(data + "/designs", path("designs"), fs::copy_options::recursive | fs::copy_options::overwrite_existing);
     for (const char* log : {"air.csv", "vacuum.csv", "wingless.csv"}) {
       std::string text = read(data + "/bench/" + log);
-      for (auto at = text.find("_mA"); at != std::string::npos; at = text.find("_mA")) text.replace(at, 3, "_A");
+      for (auto position = text.find("_mA"); position != std::string::npos; position = text.find("_mA"))
+        text.replace(position, 3, "_A");
       std::ofstream(path(std::string("bench/") + log)) << text;
     }
     std::string text = read(bench);

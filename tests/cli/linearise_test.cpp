@@ -58,7 +58,7 @@ TEST_F(Linearise, MapsHaveSlopesWithTheErrorOfTheirPoints) {
                         .json();
   const Json& maps = json["static_maps"];
   ASSERT_EQ(maps.size(), 5u);
-  const auto of = [&](std::size_t map, const char* slope, const char* column) {
+  const auto value_of = [&](std::size_t map, const char* slope, const char* column) {
     return maps[map][slope][column].get<double>();
   };
   EXPECT_EQ(maps[3]["input"], "split_cycle");
@@ -66,14 +66,14 @@ TEST_F(Linearise, MapsHaveSlopesWithTheErrorOfTheirPoints) {
   for (const auto& [map, column] : {std::pair(0, "lift"), std::pair(1, "roll_moment"), std::pair(2, "pitch_moment"),
                                     std::pair(3, "yaw_moment"), std::pair(4, "yaw_moment")}) {
     const auto which = std::size_t(map);
-    EXPECT_NEAR(of(which, "slope", column), of(which, "slope_of_points", column),
-                of(which, "slope_of_points_error", column))
+    EXPECT_NEAR(value_of(which, "slope", column), value_of(which, "slope_of_points", column),
+                value_of(which, "slope_of_points_error", column))
         << maps[which]["input"];
   }
-  EXPECT_NEAR(of(0, "slope", "lift"), json["model"]["steady_gain"][0][0].get<double>(), 1e-10);
-  EXPECT_LT(std::abs(of(3, "slope", "roll_moment")), 1e-10);
+  EXPECT_NEAR(value_of(0, "slope", "lift"), json["model"]["steady_gain"][0][0].get<double>(), 1e-10);
+  EXPECT_LT(std::abs(value_of(3, "slope", "roll_moment")), 1e-10);
   const wingbeat::NetcdfReader data_set(file);
-  EXPECT_EQ(data_set.read("yaw_moment_slope_by_split_cycle")[0], of(3, "slope", "yaw_moment"));
+  EXPECT_EQ(data_set.read("yaw_moment_slope_by_split_cycle")[0], value_of(3, "slope", "yaw_moment"));
   const std::string report = run({"linearise", data + "/designs/two-wing-direct-hinge.toml"}).out;
   for (const char* part : {"split_cycle_cosine [1]", "slope at 0", "from these points", "off by at most about"}) {
     EXPECT_THAT(report, HasSubstr(part));

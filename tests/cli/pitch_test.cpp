@@ -237,11 +237,11 @@ TEST_F(Pitch, AFitFindsTheHingeOfACrank) {
   log << "voltage_V,frequency_Hz,current_mean_A,lift_mean_N\n";
   log.precision(12);
   for (const char* volts : {"2", "2.5", "3"}) {
-    const Json at = run({"run", hinged_crank, "--set", std::string("supply.voltage=") + volts, "--set",
-                         "pitch.stiffness=4e-4", "--tolerance", "1e-9", "--json"})
-                        .json();
+    const Json result = run({"run", hinged_crank, "--set", std::string("supply.voltage=") + volts, "--set",
+                             "pitch.stiffness=4e-4", "--tolerance", "1e-9", "--json"})
+                            .json();
     log << volts;
-    for (const char* key : {"frequency_hz", "current_mean_a", "lift_mean_n"}) log << ',' << at[key].get<double>();
+    for (const char* key : {"frequency_hz", "current_mean_a", "lift_mean_n"}) log << ',' << result[key].get<double>();
     log << '\n';
   }
   log.close();

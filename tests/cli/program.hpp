@@ -94,7 +94,9 @@ class Program : public testing::Test {
 
 inline std::size_t count_of(const std::string& text, const std::string& part) {
   std::size_t n = 0;
-  for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + part.size())) ++n;
+  for (std::size_t position = text.find(part); position != std::string::npos;
+       position = text.find(part, position + part.size()))
+    ++n;
   return n;
 }
 

@@ -43,7 +43,8 @@ bool is_number(const std::string& text, double& x) {
 std::vector<std::string> matches(const std::string& text, const std::string& pattern) {
   const std::regex wanted(pattern);
   std::vector<std::string> found;
-  for (std::sregex_iterator at(text.begin(), text.end(), wanted), none; at != none; ++at) found.push_back((*at)[1]);
+  for (std::sregex_iterator match(text.begin(), text.end(), wanted), none; match != none; ++match)
+    found.push_back((*match)[1]);
   return found;
 }
 
@@ -277,7 +278,8 @@ TEST_F(Reproduce, TheReportsCommandsWorkAsTyped) {
   ASSERT_GE(commands.size(), 6U);
   for (std::string command : commands) {
     for (const std::string file : {"cycle.csv", "cycle.svg"}) {
-      if (const auto at = command.find(file); at != std::string::npos) command.replace(at, file.size(), path(file));
+      if (const auto position = command.find(file); position != std::string::npos)
+        command.replace(position, file.size(), path(file));
     }
     const std::string whole =
         "cd '" + root + "' && " + WINGBEAT_PROGRAM + " " + command + " >" + path("out.txt") + " 2>&1";

@@ -339,10 +339,10 @@ TEST_F(Run, HelpShowsAnExampleThatWorksAndVersionTheBuild) {
   for (const std::string command : {"", "run", "compare"}) {
     const Outcome o = command.empty() ? run({"--help"}) : run({command, "--help"});
     EXPECT_EQ(o.status, 0);
-    const std::size_t at = o.out.find("Example:\n");
-    ASSERT_NE(at, std::string::npos);
+    const std::size_t position = o.out.find("Example:\n");
+    ASSERT_NE(position, std::string::npos);
     // As typed, from the root of the source tree.
-    std::string example = o.out.substr(at + 9, o.out.find("\n\n", at) - at - 9);
+    std::string example = o.out.substr(position + 9, o.out.find("\n\n", position) - position - 9);
     ASSERT_THAT(example, testing::StartsWith("  wingbeat "));
     example = "cd " + path("") + " && ln -sfn " + data +
               " data && PATH=" + fs::path(WINGBEAT_PROGRAM).parent_path().string() + ":$PATH && " + example +

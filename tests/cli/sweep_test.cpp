@@ -414,8 +414,8 @@ TEST_F(Sweep, PlotsAreDrawn) {
 // The most efficient designs do not carry their weight: report and plots pass them over alike.
 TEST_F(Sweep, ReportAndPlotsAgreeAboutTheBestDesign) {
   const auto after = [](const std::string& text, const std::string& label) {
-    const auto at = text.rfind(label);
-    return at == std::string::npos ? NAN : std::stod(text.substr(at + label.size()));
+    const auto position = text.rfind(label);
+    return position == std::string::npos ? NAN : std::stod(text.substr(position + label.size()));
   };
   const std::string volts = "[[axis]]\nkey = \"supply.voltage\"\nfrom = 1\nto = 8\ncount = 15\n";
   const std::string crank =
@@ -427,14 +427,14 @@ TEST_F(Sweep, ReportAndPlotsAgreeAboutTheBestDesign) {
     ASSERT_EQ(o.status, 0) << o.err;
     const wingbeat::NetcdfReader file(path("o.nc"));
     const auto efficiency = file.read("efficiency_system"), weight = file.read("lift_to_weight");
-    double best = 0.0, most = 0.0;
+    double best = 0.0, highest = 0.0;
     for (std::size_t n = 0; n < efficiency.size(); ++n) {
       if (!std::isfinite(efficiency[n])) continue;
-      most = std::max(most, efficiency[n]);
+      highest = std::max(highest, efficiency[n]);
       if (weight[n] >= 1.0) best = std::max(best, efficiency[n]);
     }
     ASSERT_GT(best, 0.0);
-    EXPECT_GT(most, 1.1 * best);
+    EXPECT_GT(highest, 1.1 * best);
     EXPECT_NEAR(after(o.out, "maximum efficiency: "), 100.0 * best, 0.01);
     EXPECT_THAT(o.out, HasSubstr("weight)"));
     EXPECT_NEAR(after(read(path("o.svg")), "circle: best "), 100.0 * best, 0.01);

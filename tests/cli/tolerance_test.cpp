@@ -26,7 +26,8 @@ class Tolerance : public Program {
     EXPECT_EQ(outcome.out, "");
     std::string said = outcome.err;
     const std::string folder = path("");
-    for (auto at = said.find(folder); at != std::string::npos; at = said.find(folder)) said.erase(at, folder.size());
+    for (auto position = said.find(folder); position != std::string::npos; position = said.find(folder))
+      said.erase(position, folder.size());
     return said;
   }
 };

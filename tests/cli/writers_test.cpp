@@ -204,7 +204,8 @@ TEST_P(Writers, KilledItLeavesNothingHalfAndTheNextRunTidiesUp) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Outputs, Writers, testing::ValuesIn(writers()), [](const auto& of) { return of.param.name; });
+INSTANTIATE_TEST_SUITE_P(Outputs, Writers, testing::ValuesIn(writers()),
+                         [](const auto& tested) { return tested.param.name; });
 
 class Drawings : public UsersFolder {
  protected:
@@ -327,8 +328,8 @@ class HiddenCharacters : public UsersFolder {
  protected:
   void SetUp() override {
     std::string text = read(springs);
-    const auto at = text.find("name = "), end = text.find('\n', at);
-    text.replace(at, end - at, "name = \"a\\u007F\\u009B31mb\\u202Ec\\u2028d\\u0000e, =1+1 <f>\"");
+    const auto position = text.find("name = "), end = text.find('\n', position);
+    text.replace(position, end - position, "name = \"a\\u007F\\u009B31mb\\u202Ec\\u2028d\\u0000e, =1+1 <f>\"");
     write("odd.toml", text);
   }
   static bool holds_hidden(const std::string& text) {

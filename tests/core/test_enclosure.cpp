@@ -97,7 +97,7 @@ TEST(LeastValue, IsExactBelowTheLimitAndCertainAboveIt) {
   const Bump f{4.321, 3.0};
   const auto enclose = [&](double a, double b) { return f.over(a, b); };
   const Minimum exact = least_value(f, enclose, 0.0, two_pi, 1.0, 1e-12, {0.0, f(0.0)});
-  EXPECT_NEAR(exact.at, f.peak, 1e-8);
+  EXPECT_NEAR(exact.argument, f.peak, 1e-8);
   EXPECT_NEAR(exact.value, f(f.peak), 1e-8);  // over a range of 1e-8 the bump changes by as much
   const Minimum far = least_value(f, enclose, 0.0, two_pi, -2.0, 1e-12, {0.0, f(0.0)});
   EXPECT_GT(far.value, -2.0);

@@ -16,19 +16,22 @@ namespace {
 void expect_same(const Vehicle<double>& v, std::size_t count) {
   std::vector<double> theta(count);
   for (std::size_t n = 0; n < count; ++n) theta[n] = -3.0 + 0.37 * double(n);
-  std::vector<Configuration<double>> at(count);
-  configurations_at(v, theta, at);
+  std::vector<Configuration<double>> configurations(count);
+  configurations_at(v, theta, configurations);
   for (std::size_t n = 0; n < count; ++n) {
     SCOPED_TRACE(theta[n]);
     const Configuration<double> one = configuration_at(v, std::sin(theta[n]), std::cos(theta[n]));
     const auto expect_near = [](double a, double b, double size) { EXPECT_NEAR(a, b, 2e-14 * size); };
-    expect_near(stroke_angle(at[n].kinematics), stroke_angle(one.kinematics), 1.0);
+    expect_near(stroke_angle(configurations[n].kinematics), stroke_angle(one.kinematics), 1.0);
     const double slope = typical_stroke_slope(v.transmission);
-    expect_near(at[n].kinematics.stroke_slope, one.kinematics.stroke_slope, slope);
-    expect_near(at[n].kinematics.stroke_curve, one.kinematics.stroke_curve, slope * (1.0 + slope));
-    expect_near(at[n].kinematics.wing_lever, one.kinematics.wing_lever, std::abs(one.kinematics.wing_lever));
-    expect_near(at[n].kinematics.crank_lever, one.kinematics.crank_lever, typical_crank_lever(v.transmission));
-    expect_near(at[n].spring_moment, one.spring_moment, v.wing_count * v.spring.stiffness);
+    expect_near(configurations[n].kinematics.stroke_slope, one.kinematics.stroke_slope, slope);
+    expect_near(configurations[n].kinematics.stroke_second_derivative, one.kinematics.stroke_second_derivative,
+                slope * (1.0 + slope));
+    expect_near(configurations[n].kinematics.wing_jacobian, one.kinematics.wing_jacobian,
+                std::abs(one.kinematics.wing_jacobian));
+    expect_near(configurations[n].kinematics.crank_jacobian, one.kinematics.crank_jacobian,
+                typical_crank_lever(v.transmission));
+    expect_near(configurations[n].spring_moment, one.spring_moment, v.wing_count * v.spring.stiffness);
   }
 }
 

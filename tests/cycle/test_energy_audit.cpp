@@ -16,7 +16,7 @@ struct LeakyDirect : DirectSystem<S, 3> {
   using Base = DirectSystem<S, 3>;
   double leak = 1.0;
 
-  LeakyDirect(const Base& of, double by) : Base(of), leak(by) {}
+  LeakyDirect(const Base& base, double by) : Base(base), leak(by) {}
   template <Scalar T>
   LeakyDirect<T> cast() const {
     return {Base::template cast<T>(), leak};
@@ -24,12 +24,12 @@ struct LeakyDirect : DirectSystem<S, 3> {
   template <bool quadratures>
   solver::Rates<LeakyDirect> rates(const S& phi, const typename Base::State& y,
                                    const typename Base::Signs& signs) const {
-    const auto of = Base::template rates<quadratures>(phi, y, signs);
+    const auto exact = Base::template rates<quadratures>(phi, y, signs);
     solver::Rates<LeakyDirect> r;
-    r.dy = of.dy;
-    r.switches = of.switches;
+    r.dy = exact.dy;
+    r.switches = exact.switches;
     if constexpr (quadratures) {
-      r.dq = of.dq;
+      r.dq = exact.dq;
       r.dq[std::size_t(Integral::electrical_work)] = S(leak) * r.dq[std::size_t(Integral::electrical_work)];
     }
     return r;
@@ -39,11 +39,11 @@ struct LeakyDirect : DirectSystem<S, 3> {
 TEST(EnergyAudit, OrbitsThatLeaveItOpenAreRefused) {
   Vehicle<double> v = pitching_vehicle(1e-3);
   v.pitch = {};
-  const DirectSystem<double, 3> of(v, {0.5, 60.0, 0.1});
+  const DirectSystem<double, 3> system(v, {0.5, 60.0, 0.1});
   for (const double leak : {1.0, 1.0 + 3e-6, 1.0 + 3e-5, 1.001}) {
     const SteadyOptions options{.tolerance = 1e-6};
     solver::WorkBudget work;
-    detail::OrbitSearch<LeakyDirect<double>> orbit({of, leak}, options, work);
+    detail::OrbitSearch<LeakyDirect<double>> orbit({system, leak}, options, work);
     const bool within = leak < 1.0 + 1e-5;
     EXPECT_EQ(orbit.search({}), within) << leak;
     EXPECT_EQ(orbit.summary().status, within ? solver::PeriodicStatus::converged : solver::PeriodicStatus::unbalanced);

@@ -11,7 +11,7 @@
 namespace wingbeat {
 namespace {
 
-struct Instant {
+struct MotionCase {
   Vehicle<double> vehicle;
   double theta, omega, current, voltage;
 
@@ -25,7 +25,8 @@ struct Instant {
   }
   bool unique() const {
     const auto k = crank_kinematics(vehicle.transmission, std::sin(theta), std::cos(theta));
-    return k.wing_lever > 0.0 && effective_inertia(vehicle, k, 1.0) > 0.0 && effective_inertia(vehicle, k, -1.0) > 0.0;
+    return k.wing_jacobian > 0.0 && effective_inertia(vehicle, k, 1.0) > 0.0 &&
+           effective_inertia(vehicle, k, -1.0) > 0.0;
   }
 };
 
@@ -34,11 +35,11 @@ void for_random_instants(int count, const F& check) {
   std::mt19937_64 random(2022);
   std::uniform_real_distribution<double> unit(0.0, 1.0);
   for (int n = 0; n < count; ++n) {
-    Instant at{resolve(random_design(random)), two_pi * unit(random), 0.0, 0.0, 6.0 * unit(random)};
+    MotionCase c{resolve(random_design(random)), two_pi * unit(random), 0.0, 0.0, 6.0 * unit(random)};
     const double speed = 300.0 * unit(random);
-    at.omega = unit(random) < 0.75 ? speed : -speed;
-    at.current = 1.2 * unit(random) - 0.4;
-    check(at);
+    c.omega = unit(random) < 0.75 ? speed : -speed;
+    c.current = 1.2 * unit(random) - 0.4;
+    check(c);
   }
 }
 
@@ -54,18 +55,19 @@ void expect_balance(std::initializer_list<double> terms) {
 
 TEST(Motion, SatisfiesTheEquationsOnBothBranches) {
   int count = 0;
-  for_random_instants(2000, [&](const Instant& at) {
-    if (!at.unique()) return;
+  for_random_instants(2000, [&](const MotionCase& c) {
+    if (!c.unique()) return;
     ++count;
-    const Vehicle<double>& v = at.vehicle;
-    const double direction = sign_of(at.omega), omega = at.omega;
+    const Vehicle<double>& v = c.vehicle;
+    const double direction = sign_of(c.omega), omega = c.omega;
     for (const double force_sign : {1.0, -1.0}) {
-      const Motion<double> m = at.on(force_sign);
+      const Motion<double> m = c.on(force_sign);
       const auto& k = m.kinematics;
       const double beta1 = k.stroke_slope * omega;
-      const double beta2 = k.stroke_slope * m.crank_acceleration + k.stroke_curve * omega * omega;
+      const double beta2 = k.stroke_slope * m.crank_acceleration + k.stroke_second_derivative * omega * omega;
       EXPECT_DOUBLE_EQ(m.stroke_velocity, beta1);
-      EXPECT_NEAR(m.stroke_acceleration, beta2, 1e-13 * (std::abs(beta2) + std::abs(k.stroke_curve) * omega * omega));
+      EXPECT_NEAR(m.stroke_acceleration, beta2,
+                  1e-13 * (std::abs(beta2) + std::abs(k.stroke_second_derivative) * omega * omega));
       // (3): the moment is along beta'.
       const double alpha = pi / 2.0 - v.wings.pitch_coefficient * std::abs(beta1);
       const double C_D = 1.92 - 1.55 * std::cos(2.04 * alpha - 9.82 * pi / 180.0);
@@ -73,23 +75,23 @@ TEST(Motion, SatisfiesTheEquationsOnBothBranches) {
       EXPECT_NEAR(m.aero.moment, aero, 1e-13 * std::abs(aero));
       // (1, 21)
       expect_balance({v.wing_count * v.wing_inertia * m.stroke_acceleration, m.aero.moment,
-                      v.wing_count * v.spring.stiffness * stroke_angle(k), -m.rod_force * k.wing_lever});
+                      v.wing_count * v.spring.stiffness * stroke_angle(k), -m.rod_force * k.wing_jacobian});
       // (6) and the other laws, |F| being force_sign F on this branch
       const double T_f = direction * v.friction.radius * force_sign * m.rod_force + v.friction.damping * omega +
                          v.friction.quadratic * omega * std::abs(omega) + direction * v.friction.torque;
       EXPECT_NEAR(m.friction_torque, T_f, 1e-12 * (std::abs(T_f) + std::abs(v.friction.radius * m.rod_force)));
       // (5)
-      expect_balance({m.motor_torque, -m.rod_force * k.crank_lever, -m.friction_torque});
+      expect_balance({m.motor_torque, -m.rod_force * k.crank_jacobian, -m.friction_torque});
       // (9, 10)
-      expect_balance({v.motor.torque_constant * at.current, -m.rod_force * k.crank_lever, -T_f,
+      expect_balance({v.motor.torque_constant * c.current, -m.rod_force * k.crank_jacobian, -T_f,
                       -direction * v.motor.friction_torque, -v.motor.inertia * m.crank_acceleration,
                       -v.motor.viscous_damping * omega});
       // (11)
-      expect_balance({at.voltage, -m.inductive_voltage, -v.motor.armature_resistance * at.current,
+      expect_balance({c.voltage, -m.inductive_voltage, -v.motor.armature_resistance * c.current,
                       -v.motor.torque_constant * omega});
       EXPECT_DOUBLE_EQ(m.stored_moment, v.wing_count * v.wing_inertia * m.stroke_acceleration +
                                             v.wing_count * v.spring.stiffness * stroke_angle(k));
-      EXPECT_NEAR(m.rod_force * effective_inertia(v, k, force_sign * direction) * k.wing_lever, m.force_switch,
+      EXPECT_NEAR(m.rod_force * effective_inertia(v, k, force_sign * direction) * k.wing_jacobian, m.force_switch,
                   1e-13 * std::abs(m.force_switch));
     }
   });
@@ -98,10 +100,10 @@ TEST(Motion, SatisfiesTheEquationsOnBothBranches) {
 
 TEST(Motion, ForceSwitchHasTheSignOfTheForceWhicheverTheBranch) {
   int count = 0, negative = 0;
-  for_random_instants(2000, [&](const Instant& at) {
-    if (!at.unique()) return;
+  for_random_instants(2000, [&](const MotionCase& c) {
+    if (!c.unique()) return;
     ++count;
-    const Motion<double> up = at.on(1.0), down = at.on(-1.0);
+    const Motion<double> up = c.on(1.0), down = c.on(-1.0);
     EXPECT_EQ(up.force_switch, down.force_switch);
     EXPECT_EQ(sign_of(up.force_switch), sign_of(up.rod_force));
     EXPECT_EQ(sign_of(down.force_switch), sign_of(down.rod_force));
@@ -112,18 +114,18 @@ TEST(Motion, ForceSwitchHasTheSignOfTheForceWhicheverTheBranch) {
 }
 
 TEST(Motion, BranchesMeetWhereTheForceVanishes) {
-  for_random_instants(500, [&](Instant at) {
-    if (!at.unique()) return;
+  for_random_instants(500, [&](MotionCase c) {
+    if (!c.unique()) return;
     // The force switch is linear in the current.
-    at.current = 0.0;
-    const double s0 = at.on(1.0).force_switch;
-    at.current = 1.0;
-    const double s1 = at.on(1.0).force_switch;
+    c.current = 0.0;
+    const double s0 = c.on(1.0).force_switch;
+    c.current = 1.0;
+    const double s1 = c.on(1.0).force_switch;
     if (std::abs(s1 - s0) < 1e-3 * std::abs(s0)) return;
-    at.current = -s0 / (s1 - s0);
-    const Motion<double> up = at.on(1.0), down = at.on(-1.0);
-    const double per_force = up.kinematics.wing_lever * std::min(effective_inertia(at.vehicle, up.kinematics, 1.0),
-                                                                 effective_inertia(at.vehicle, up.kinematics, -1.0));
+    c.current = -s0 / (s1 - s0);
+    const Motion<double> up = c.on(1.0), down = c.on(-1.0);
+    const double per_force = up.kinematics.wing_jacobian * std::min(effective_inertia(c.vehicle, up.kinematics, 1.0),
+                                                                    effective_inertia(c.vehicle, up.kinematics, -1.0));
     EXPECT_NEAR(up.rod_force * per_force, 0.0, 1e-13 * (std::abs(s0) + std::abs(s1)));
     EXPECT_NEAR(up.crank_acceleration, down.crank_acceleration, 1e-10 * std::abs(up.crank_acceleration) + 1e-8);
   });
@@ -131,14 +133,14 @@ TEST(Motion, BranchesMeetWhereTheForceVanishes) {
 
 TEST(Motion, PowerBalancesAtEveryInstant) {
   int count = 0;
-  for_random_instants(2000, [&](const Instant& at) {
-    if (!at.unique()) return;
-    const Vehicle<double>& v = at.vehicle;
-    const Motion<double> m = at.on(sign_of(at.on(1.0).force_switch));
-    const double omega = at.omega, i = at.current;
+  for_random_instants(2000, [&](const MotionCase& c) {
+    if (!c.unique()) return;
+    const Vehicle<double>& v = c.vehicle;
+    const Motion<double> m = c.on(sign_of(c.on(1.0).force_switch));
+    const double omega = c.omega, i = c.current;
     // d(stored)/dt by a dual number that carries the time derivative.
     using J = Jet<1>;
-    J theta(at.theta), w(omega), current(i);
+    J theta(c.theta), w(omega), current(i);
     theta.v[0] = omega;
     w.v[0] = m.crank_acceleration;
     if (v.motor.armature_inductance > 0.0) current.v[0] = m.inductive_voltage / v.motor.armature_inductance;
@@ -147,17 +149,17 @@ TEST(Motion, PowerBalancesAtEveryInstant) {
         stored_energy(dual, crank_kinematics(dual.transmission, sin(theta), cos(theta)), w, current).v[0];
     // Without an inductance the state need not satisfy v = R i + K omega: its reserve does no work on the field.
     const double voltage = v.motor.armature_inductance > 0.0
-                               ? at.voltage
+                               ? c.voltage
                                : v.motor.armature_resistance * i + v.motor.torque_constant * omega;
     const auto& k = m.kinematics;
-    const double formulation = m.rod_force * (k.crank_lever * omega - k.wing_lever * m.stroke_velocity);
+    const double formulation = m.rod_force * (k.crank_jacobian * omega - k.wing_jacobian * m.stroke_velocity);
     expect_balance({voltage * i, -v.motor.armature_resistance * i * i, -v.motor.viscous_damping * omega * omega,
                     -v.motor.friction_torque * std::abs(omega), -m.friction_torque * omega,
                     -m.aero.moment * m.stroke_velocity, -stored, -formulation});
     EXPECT_GE(m.friction_torque * omega, 0.0);
     EXPECT_GE(m.aero.moment * m.stroke_velocity, 0.0);
     if (v.transmission.slider_crank.formulation == Formulation::virtual_work) {
-      EXPECT_LE(std::abs(formulation), 1e-14 * std::abs(m.rod_force * k.crank_lever * omega));
+      EXPECT_LE(std::abs(formulation), 1e-14 * std::abs(m.rod_force * k.crank_jacobian * omega));
     }
     ++count;
   });
@@ -165,26 +167,26 @@ TEST(Motion, PowerBalancesAtEveryInstant) {
 }
 
 TEST(Motion, IntegrandsAreTheirDefinitions) {
-  for_random_instants(500, [&](const Instant& at) {
-    if (!at.unique()) return;
-    const Vehicle<double>& v = at.vehicle;
-    const Motion<double> m = at.on(sign_of(at.on(1.0).force_switch));
-    Branch<double> branch = at.branch(sign_of(m.force_switch));
+  for_random_instants(500, [&](const MotionCase& c) {
+    if (!c.unique()) return;
+    const Vehicle<double>& v = c.vehicle;
+    const Motion<double> m = c.on(sign_of(c.on(1.0).force_switch));
+    Branch<double> branch = c.branch(sign_of(m.force_switch));
     branch.stored_power = sign_of(m.stored_moment * m.stroke_velocity);
-    const auto q = integrands(m, at.omega, branch);
+    const auto q = integrands(m, c.omega, branch);
     const auto value = [&](Integral which) { return q[std::size_t(which)]; };
     EXPECT_EQ(value(Integral::time), 1.0);
-    EXPECT_DOUBLE_EQ(value(Integral::current), at.current);
-    EXPECT_DOUBLE_EQ(value(Integral::current_square), at.current * at.current);
-    EXPECT_DOUBLE_EQ(value(Integral::speed_square), at.omega * at.omega);
-    EXPECT_DOUBLE_EQ(value(Integral::electrical_work), at.voltage * at.current);
-    EXPECT_DOUBLE_EQ(value(Integral::motor_work), m.motor_torque * at.omega);
-    EXPECT_DOUBLE_EQ(value(Integral::friction_work), m.friction_torque * at.omega);
+    EXPECT_DOUBLE_EQ(value(Integral::current), c.current);
+    EXPECT_DOUBLE_EQ(value(Integral::current_square), c.current * c.current);
+    EXPECT_DOUBLE_EQ(value(Integral::speed_square), c.omega * c.omega);
+    EXPECT_DOUBLE_EQ(value(Integral::electrical_work), c.voltage * c.current);
+    EXPECT_DOUBLE_EQ(value(Integral::motor_work), m.motor_torque * c.omega);
+    EXPECT_DOUBLE_EQ(value(Integral::friction_work), m.friction_torque * c.omega);
     EXPECT_DOUBLE_EQ(value(Integral::aero_work), m.aero.moment * m.stroke_velocity);
     EXPECT_DOUBLE_EQ(value(Integral::reactive_work), std::abs(m.stored_moment * m.stroke_velocity));
     EXPECT_DOUBLE_EQ(value(Integral::lift), aero_loads(v.wings, std::abs(m.stroke_velocity)).lift);
     EXPECT_DOUBLE_EQ(value(Integral::rod_force), std::abs(m.rod_force));
-    EXPECT_DOUBLE_EQ(value(Integral::travel), std::abs(at.omega));
+    EXPECT_DOUBLE_EQ(value(Integral::travel), std::abs(c.omega));
   });
 }
 

@@ -20,13 +20,13 @@ using PitchCrank = PitchCrankSystem<double, 4>;
 
 PitchCrank pitch_crank(double stiffness, double stop = infinity, double friction_radius = 2.5e-3,
                        Formulation formulation = Formulation::virtual_work) {
-  const Vehicle<double> of = pitching_vehicle(stiffness);
+  const Vehicle<double> hinged = pitching_vehicle(stiffness);
   Design<double> d = reference_design();
   d.transmission.formulation = formulation;
   d.friction.coefficient = friction_radius;
   Vehicle<double> v = resolve(d);
-  v.wings = of.wings;
-  v.pitch = of.pitch;
+  v.wings = hinged.wings;
+  v.pitch = hinged.pitch;
   v.pitch.hinge.stop = stop;
   return {v, {138.0, 0.5, 60.0, 0.1}, 1.0};
 }

@@ -63,7 +63,7 @@ TEST(Transmission, StrokeLawIsConsistent) {
     const auto dual = crank_kinematics(cast<J>(lopsided), sin(J(theta, 0)), cos(J(theta, 0)));
     const auto k = crank_kinematics(lopsided, std::sin(theta), std::cos(theta));
     EXPECT_NEAR(stroke_angle(dual).v[0], k.stroke_slope, 1e-15);
-    EXPECT_NEAR(dual.stroke_slope.v[0], k.stroke_curve, 1e-15);
+    EXPECT_NEAR(dual.stroke_slope.v[0], k.stroke_second_derivative, 1e-15);
   }
   const Reversals r = reversals(lopsided);
   const auto beta = [&](double theta) {
@@ -153,9 +153,9 @@ TEST(StrokeLawOrbit, IsWhatTheEquationsReachInTime) {
     State next;
     for (std::size_t j = 0; j < 3; ++j) next[j] = y[j] + dt / 6.0 * (k1[j] + 2.0 * (k2[j] + k3[j]) + k4[j]);
     if (next[0] >= turn) {
-      const double at = dt * (n + (turn - y[0]) / (next[0] - y[0]));
-      period = at - passed;
-      passed = at;
+      const double crossed = dt * (n + (turn - y[0]) / (next[0] - y[0]));
+      period = crossed - passed;
+      passed = crossed;
       turn += two_pi;
     }
     y = next;
@@ -167,9 +167,9 @@ TEST(StrokeLawOrbit, GradientAgreesWithDifferences) {
   const StrokeLawVehicle<double> v = stroke_law_vehicle(lopsided);
   const double tolerance = 1e-12;
   const Orbit<2> orbit = orbit_of<2>(v, tolerance);
-  const auto parameters = []<class S>(StrokeLawVehicle<S>& of) {
-    return std::array{&of.transmission.amplitude, &of.transmission.second, &of.transmission.radius,
-                      &of.spring.stiffness, &of.motor.torque_constant};
+  const auto parameters = []<class S>(StrokeLawVehicle<S>& vehicle) {
+    return std::array{&vehicle.transmission.amplitude, &vehicle.transmission.second, &vehicle.transmission.radius,
+                      &vehicle.spring.stiffness, &vehicle.motor.torque_constant};
   };
   auto jets = cast<GradientJet>(v);
   for (int k = 0; k < gradient_parameters; ++k) {
@@ -180,13 +180,13 @@ TEST(StrokeLawOrbit, GradientAgreesWithDifferences) {
   ASSERT_TRUE(cycle.run());
   const auto gradient = cycle_metrics(jets, cycle.integrals(), cycle.extremes(), GradientJet(absent), {});
   for (int k = 0; k < gradient_parameters; ++k) {
-    const auto at = [&](double by) {
+    const auto metrics_at = [&](double by) {
       StrokeLawVehicle<double> moved = v;
       *parameters(moved)[std::size_t(k)] *= 1.0 + by;
       return orbit_of<2>(moved, tolerance).metrics;
     };
     const double h = 2e-4;
-    const auto p1 = at(h), m1 = at(-h), p2 = at(2.0 * h), m2 = at(-2.0 * h);
+    const auto p1 = metrics_at(h), m1 = metrics_at(-h), p2 = metrics_at(2.0 * h), m2 = metrics_at(-2.0 * h);
     const double value = *parameters(const_cast<StrokeLawVehicle<double>&>(v))[std::size_t(k)];
     for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::power_friction,
                            Metric::power_aerodynamic, Metric::lift_mean, Metric::lift_peak, Metric::rod_force_peak,

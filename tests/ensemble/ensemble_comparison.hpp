@@ -76,9 +76,9 @@ inline StartUp remembered_start_up() {
     const std::array<double, 6> key = {
         v.voltage,      v.motor.inertia,   v.motor.torque_constant, v.transmission.slider_crank.crank_radius,
         v.wing_inertia, v.spring.stiffness};
-    const auto [at, is_new] = known->try_emplace(key);
-    if (is_new) at->second = assess(v);
-    return at->second;
+    const auto [entry, is_new] = known->try_emplace(key);
+    if (is_new) entry->second = assess(v);
+    return entry->second;
   };
 }
 

@@ -162,8 +162,8 @@ TEST(AddedMass, MeanPowerAndMeanRotationalLiftOverAnOrbitVanish) {
     for (std::size_t n = 1; n < velocities.size(); ++n) {
       const double a = velocities[n - 1], b = velocities[n];
       constexpr double node = 0.77459666924148337704;
-      for (const auto& [at, weight] : {std::pair{-node, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {node, 5.0 / 9.0}}) {
-        const double velocity = 0.5 * (a + b) + 0.5 * at * (b - a), step = 0.5 * weight * (b - a);
+      for (const auto& [share, weight] : {std::pair{-node, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {node, 5.0 / 9.0}}) {
+        const double velocity = 0.5 * (a + b) + 0.5 * share * (b - a), step = 0.5 * weight * (b - a);
         const AeroLoads<double> loads = aero_loads(v.wings, velocity, sign_of(velocity), 1.0);
         const double power = loads.added_inertia * velocity * step;  // I beta'' beta' dt
         work += power;
@@ -182,9 +182,9 @@ TEST(AddedMass, MeanPowerAndMeanRotationalLiftOverAnOrbitVanish) {
 }
 
 TEST(AddedMass, DerivativesAgreeWithDifferences) {
-  const auto parameters = [](auto& of) {
-    return std::array{&of.wing.planform.length, &of.wing.planform.root_chord, &of.aerodynamics.pitch_coefficient,
-                      &of.aerodynamics.air_density, &of.wing.inertia};
+  const auto parameters = [](auto& design) {
+    return std::array{&design.wing.planform.length, &design.wing.planform.root_chord,
+                      &design.aerodynamics.pitch_coefficient, &design.aerodynamics.air_density, &design.wing.inertia};
   };
   for (const bool springs : {false, true}) {
     expect_orbit_derivatives(with_added_mass(springs), parameters,

@@ -36,7 +36,7 @@ TEST(GearEfficiency, OneBranchHoldsAndTheGearboxOnlyTakes) {
     v.motor.gear_efficiency = uniform(0.4, 1.0);
     const double theta = uniform(0.0, two_pi), omega = uniform(5.0, 400.0), i = uniform(-0.2, 0.5);
     const CrankKinematics<double> k = crank_kinematics(v.transmission, std::sin(theta), std::cos(theta));
-    if (!(min_inertia(v, k) > 0.0) || !(k.wing_lever > 0.0)) continue;
+    if (!(min_inertia(v, k) > 0.0) || !(k.wing_jacobian > 0.0)) continue;
     ++states;
     int agree = 0;
     for (const double gear : {1.0, -1.0}) {
@@ -51,7 +51,7 @@ TEST(GearEfficiency, OneBranchHoldsAndTheGearboxOnlyTakes) {
                            motor.inertia * m.crank_acceleration;
         const double e = gear > 0.0 ? motor.gear_efficiency : 1.0 / motor.gear_efficiency;
         const double behind = m.motor_torque;
-        const double size = std::abs(T_g) + std::abs(m.rod_force * k.crank_lever) + std::abs(m.friction_torque);
+        const double size = std::abs(T_g) + std::abs(m.rod_force * k.crank_jacobian) + std::abs(m.friction_torque);
         EXPECT_NEAR(m.gear_torque, T_g, 1e-12 * size);
         EXPECT_NEAR(behind, e * T_g, 1e-11 * size);
         EXPECT_NEAR(m.gear_loss, (T_g - behind) * omega, 1e-11 * size * omega);
@@ -162,11 +162,11 @@ TEST(GearEfficiency, Statics) {
   for (int n = 0; n < 360; ++n) {
     const double theta = two_pi * n / 360.0;
     const CrankKinematics<double> k = crank_kinematics(v.transmission, std::sin(theta), std::cos(theta));
-    const double F_s = static_rod_force(k, spring_moment(v, k)), load = F_s * k.crank_lever;
-    const StandingTorques<double> at = standing_torques(v, k, F_s);
-    EXPECT_NEAR(at.high, load > 0.0 ? load / 0.8 : 0.8 * load, 1e-18);
-    EXPECT_NEAR(at.low, load > 0.0 ? 0.8 * load : load / 0.8, 1e-18);
-    EXPECT_LE(at.low, at.high);
+    const double F_s = static_rod_force(k, spring_moment(v, k)), load = F_s * k.crank_jacobian;
+    const StandingTorques<double> torques = standing_torques(v, k, F_s);
+    EXPECT_NEAR(torques.high, load > 0.0 ? load / 0.8 : 0.8 * load, 1e-18);
+    EXPECT_NEAR(torques.low, load > 0.0 ? 0.8 * load : load / 0.8, 1e-18);
+    EXPECT_LE(torques.low, torques.high);
     ++(load > 0.0 ? uphill : downhill);
   }
   EXPECT_GT(uphill, 100);
@@ -185,9 +185,9 @@ TEST(GearEfficiency, Statics) {
 }
 
 TEST(GearEfficiency, DerivativesAgreeWithDifferences) {
-  const auto parameters = [](auto& of) {
-    return std::array{&*of.motor.gear_efficiency, &of.motor.constants.inertia, &of.motor.constants.friction_torque,
-                      &of.friction.coefficient, &of.wing.inertia};
+  const auto parameters = [](auto& design) {
+    return std::array{&*design.motor.gear_efficiency, &design.motor.constants.inertia,
+                      &design.motor.constants.friction_torque, &design.friction.coefficient, &design.wing.inertia};
   };
   for (const bool springs : {false, true}) {
     Design<double> d = reference_design();

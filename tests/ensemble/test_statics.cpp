@@ -89,7 +89,7 @@ TEST(Statics, LeastValuesAreThoseOfEveryAngle) {
     for (int k = 0; k < samples; ++k) {
       const double angle = two_pi * k / samples;
       const auto kinematics = crank_kinematics(v.transmission, std::sin(angle), std::cos(angle));
-      lever = std::min(lever, kinematics.wing_lever);
+      lever = std::min(lever, kinematics.wing_jacobian);
       inertia = std::min(inertia, min_inertia(v, kinematics));
       advance = std::min(advance, advance_torque(v, angle));
     }

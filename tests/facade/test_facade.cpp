@@ -16,7 +16,7 @@ namespace {
 
 const std::string springs = WINGBEAT_DATA "/designs/friction2022-springs.toml";
 
-TEST(Door, SolvesSimulatesAndDifferentiates) {
+TEST(Facade, SolvesSimulatesAndDifferentiates) {
   Design<double> design = read_design(springs);
   const RunResult found = solve(design, {.tolerance = 1e-9});
   ASSERT_EQ(found.status, FlappingStatus::flapping);
@@ -39,7 +39,7 @@ TEST(Door, SolvesSimulatesAndDifferentiates) {
   EXPECT_NEAR(slopes.gradients[1][std::size_t(Metric::lift_mean)] / difference, 1.0, 1e-5);
 }
 
-TEST(Door, StartUpIsAssessedWithoutBeingAsked) {
+TEST(Facade, StartUpIsAssessedWithoutBeingAsked) {
   Design<double> design = read_design(springs);
   design.supply.voltage = 0.4;
   EXPECT_EQ(solve(design).status, FlappingStatus::locked);
@@ -47,7 +47,7 @@ TEST(Door, StartUpIsAssessedWithoutBeingAsked) {
   EXPECT_EQ(solve_ensemble(std::vector(3, design))[1].status, FlappingStatus::locked);
 }
 
-TEST(Door, EnsemblesAreWhatEachDesignGives) {
+TEST(Facade, EnsemblesAreWhatEachDesignGives) {
   std::vector<Design<double>> designs(40, read_design(springs));
   for (std::size_t n = 0; n < designs.size(); ++n) designs[n].supply.voltage = 0.3 + 0.1 * double(n);
   const std::vector<EnsembleOutcome> outcomes = solve_ensemble(designs);
@@ -59,7 +59,7 @@ TEST(Door, EnsemblesAreWhatEachDesignGives) {
   }
 }
 
-TEST(Door, BadParametersAreNamed) {
+TEST(Facade, BadParametersAreNamed) {
   Design<double> design = read_design(springs);
   EXPECT_THROW(gradient(design, {"transmission.crank"}), ParameterError);
   design.transmission.crank_radius = -1.0;
@@ -74,7 +74,7 @@ TEST(Door, BadParametersAreNamed) {
   }
 }
 
-TEST(Door, DesignsFromValuesOfKeys) {
+TEST(Facade, DesignsFromValuesOfKeys) {
   const Design<double> design = read_design(springs);
   const std::vector<std::string> values = {"transmission.crank_radius=\"7 mm\"", "wing.count=4", "supply.voltage=2 V"};
   const Design<double> other = design_with(values, &design);
@@ -112,7 +112,7 @@ std::string text_with(const std::string& assignment, const Design<double>& base)
   }
 }
 
-TEST(Door, ANumberByItselfIsWhatTheVehicleFileWouldMakeOfIt) {
+TEST(Facade, ANumberByItselfIsWhatTheVehicleFileWouldMakeOfIt) {
   int compared = 0, refused = 0;
   for (const auto& file : std::filesystem::directory_iterator(WINGBEAT_DATA "/designs")) {
     if (file.path().extension() != ".toml") continue;
@@ -144,22 +144,22 @@ std::vector<double> integrated(const EquationsOfMotion& equations, double from, 
   constexpr int steps = 20;
   const double h = (to - from) / steps;
   const std::size_t n = y.size();
-  std::vector<double> k[4], at;
+  std::vector<double> k[4], moved;
   for (int s = 0; s < steps; ++s) {
     const double t = from + s * h;
     for (int stage = 0; stage < 4; ++stage) {
       const double part = stage == 0 ? 0.0 : stage == 3 ? 1.0 : 0.5;
-      at = y;
-      for (std::size_t c = 0; stage > 0 && c < n; ++c) at[c] += part * h * k[stage - 1][c];
+      moved = y;
+      for (std::size_t c = 0; stage > 0 && c < n; ++c) moved[c] += part * h * k[stage - 1][c];
       k[stage].resize(n);
-      equations.rates(t + part * h, at.data(), k[stage].data(), voltage);
+      equations.rates(t + part * h, moved.data(), k[stage].data(), voltage);
     }
     for (std::size_t c = 0; c < n; ++c) y[c] += h / 6.0 * (k[0][c] + 2.0 * k[1][c] + 2.0 * k[2][c] + k[3][c]);
   }
   return y;
 }
 
-TEST(Door, EquationsOfMotionAreThoseOfTheSimulation) {
+TEST(Facade, EquationsOfMotionAreThoseOfTheSimulation) {
   int compared = 0;
   for (const auto& file : std::filesystem::directory_iterator(WINGBEAT_DATA "/designs")) {
     if (file.path().extension() != ".toml") continue;
@@ -193,7 +193,7 @@ TEST(Door, EquationsOfMotionAreThoseOfTheSimulation) {
   EXPECT_GE(compared, 5);
 }
 
-TEST(Door, EquationsOfMotionAreThoseOfTheSteppedSimulation) {
+TEST(Facade, EquationsOfMotionAreThoseOfTheSteppedSimulation) {
   for (const char* name : {"friction2022-springs", "direct-drive", "pitch-hinge", "pitch-hinge-crank"}) {
     const Design<double> design = read_design(fmt::format("{}/designs/{}.toml", WINGBEAT_DATA, name));
     for (const std::optional<double> voltage : {std::optional<double>(), std::optional<double>(2.5)}) {
@@ -220,7 +220,7 @@ TEST(Door, EquationsOfMotionAreThoseOfTheSteppedSimulation) {
   }
 }
 
-TEST(Door, EquationsOfMotionUnderAnyVoltage) {
+TEST(Facade, EquationsOfMotionUnderAnyVoltage) {
   Design<double> design = read_design(springs);
   const double state[] = {1.0, 100.0, 0.1};
   double given[3], stated[3];
@@ -238,7 +238,7 @@ TEST(Door, EquationsOfMotionUnderAnyVoltage) {
   EXPECT_TRUE(std::isfinite(fast[1]));
 }
 
-TEST(Door, EveryNameIsTheKeyWithoutItsUnit) {
+TEST(Facade, EveryNameIsTheKeyWithoutItsUnit) {
   EXPECT_EQ(name_without_unit("lift_mean_n", "N"), "lift_mean");
   EXPECT_EQ(name_without_unit("lift_to_weight", "1"), "lift_to_weight");
   EXPECT_EQ(name_without_unit("lift_n", "W"), "lift_n");

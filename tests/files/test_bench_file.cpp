@@ -115,8 +115,8 @@ class BenchFile : public testing::Test {
       read_bench(folder_ / "bench.toml");
     } catch (const InputError& error) {
       const std::string what = error.what();
-      const auto at = what.find(folder_.string());
-      return at == 0 ? what.substr(folder_.string().size() + 1) : what;
+      const auto position = what.find(folder_.string());
+      return position == 0 ? what.substr(folder_.string().size() + 1) : what;
     }
     return "accepted";
   }

@@ -57,9 +57,9 @@ TEST(DesignErrors, Batteries) {
   text.erase(text.find("voltage = \"3 V\"\n"), 16);
   const auto spoiled = [&](const std::string& from, const std::string& to) {
     std::string s = text;
-    const auto at = s.find(from);
-    EXPECT_NE(at, std::string::npos) << from;
-    return refusal(s.replace(at, from.size(), to));
+    const auto position = s.find(from);
+    EXPECT_NE(position, std::string::npos) << from;
+    return refusal(s.replace(position, from.size(), to));
   };
   EXPECT_EQ(spoiled("\"50 mA h\"", "\"50 mV\""),
             "v.toml:5:1: supply.capacity: expected an electric charge such as \"50 mA h\", got \"50 mV\"");

@@ -36,9 +36,9 @@ angle_of_attack_min = "45 deg"
 
 std::string direct_with(const std::string& old, const std::string& replacement) {
   std::string text = direct_file;
-  const auto at = text.find(old);
-  EXPECT_NE(at, std::string::npos) << old;
-  return text.replace(at, old.size(), replacement);
+  const auto position = text.find(old);
+  EXPECT_NE(position, std::string::npos) << old;
+  return text.replace(position, old.size(), replacement);
 }
 
 std::string refusal(const std::string& text) {

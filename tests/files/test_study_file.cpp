@@ -45,7 +45,8 @@ class StudyFile : public testing::Test {
     } catch (const InputError& error) {
       std::string said = error.what();
       const std::string folder = folder_.string() + "/";
-      for (auto at = said.find(folder); at != std::string::npos; at = said.find(folder)) said.erase(at, folder.size());
+      for (auto position = said.find(folder); position != std::string::npos; position = said.find(folder))
+        said.erase(position, folder.size());
       return said;
     }
   }

@@ -52,9 +52,9 @@ pitch_coefficient = "5e-3 s"
 /// The test vehicle with the first occurrence of one text replaced by another.
 inline std::string with(const std::string& from, const std::string& to) {
   std::string text = vehicle_text;
-  const auto at = text.find(from);
-  EXPECT_NE(at, std::string::npos) << from;
-  return text.replace(at, from.size(), to);
+  const auto position = text.find(from);
+  EXPECT_NE(position, std::string::npos) << from;
+  return text.replace(position, from.size(), to);
 }
 
 inline std::string without_line(const std::string& line) { return with(line + "\n", ""); }

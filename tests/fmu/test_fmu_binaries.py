@@ -17,8 +17,8 @@ class Sources(unittest.TestCase):
             package = export(CRANK, version, "--sources")
             self.assertEqual(problems_of(package), [])
         sources = package.root / "sources"
-        told = (sources / "README.txt").read_text().replace("\\\n", " ")
-        command = next(line for line in told.splitlines() if line.strip().startswith("gcc ")).split()
+        readme = (sources / "README.txt").read_text().replace("\\\n", " ")
+        command = next(line for line in readme.splitlines() if line.strip().startswith("gcc ")).split()
         # As README.txt says but for optimisation, and with the list of all files read.
         command[command.index("-O2")] = "-O0"
         subprocess.run([*command, "-MD", "-MF", "read.txt"], cwd=sources, check=True)
@@ -51,18 +51,18 @@ class Sources(unittest.TestCase):
                         examples / "importer.c", "-o", importer, "-ldl"], check=True)  # fmt: skip
         references = [str(package.reference(name)) for name in ("crank_angle", "current", "lift_mean")]
 
-        def told(command, binary):
+        def computed(command, binary):
             line = [*command, binary, package.root / "resources", package.token, "3", "0.2", "0.001", *references]
             return [float(x) for x in subprocess.run(line, capture_output=True, check=True).stdout.split()]
 
-        here = told([os.environ["FMU_IMPORTER"]], package.binary())
-        np.testing.assert_allclose(told([*emulator, importer], sources / "arm.so"), here, rtol=1e-9)
+        here = computed([os.environ["FMU_IMPORTER"]], package.binary())
+        np.testing.assert_allclose(computed([*emulator, importer], sources / "arm.so"), here, rtol=1e-9)
 
 
 class Importers(unittest.TestCase):
     REFERENCES = ("crank_angle", "current", "frequency_mean", "lift_mean", "power_friction")
 
-    def told(self, importer, package, binary, folder=""):
+    def computed(self, importer, package, binary, folder=""):
         references = [str(package.reference(name)) for name in self.REFERENCES]
         command = [*importer, folder + str(binary), folder + str(package.root / "resources"), package.token,
                    str(package.version), "0.5", "0.001", *references]  # fmt: skip
@@ -72,7 +72,7 @@ class Importers(unittest.TestCase):
     def test_one_in_c(self):
         for version in (2, 3):
             package = export(CRANK, version)
-            found = self.told([os.environ["FMU_IMPORTER"]], package, package.binary())
+            found = self.computed([os.environ["FMU_IMPORTER"]], package, package.binary())
             instance = Instance(package, True, 0.0)
             for k in range(500):
                 instance.step(k * 0.001, 0.001)
@@ -86,9 +86,9 @@ class Importers(unittest.TestCase):
                 package = export(vehicle, version)
                 if vehicle == DIRECT:
                     self.REFERENCES = ("stroke_angle", "current", "lift_mean")
-                here = self.told([os.environ["FMU_IMPORTER"]], package, package.binary())
+                here = self.computed([os.environ["FMU_IMPORTER"]], package, package.binary())
                 wine = [os.environ["WINE"], os.environ["FMU_IMPORTER_WINDOWS"]]
-                there = self.told(wine, package, package.binary(windows=True), "Z:")
+                there = self.computed(wine, package, package.binary(windows=True), "Z:")
                 np.testing.assert_allclose(there, here, rtol=1e-12)
 
 

@@ -63,20 +63,20 @@ TEST(FmuInstance, DerivativesAreThoseOfDifferences) {
     for (const Variable& v : variables_of(design)) {
       if (v.kind == VariableKind::state) knowns.push_back(v.reference());
     }
-    const std::vector<double> at = one.states(), here = values();
-    ASSERT_EQ(knowns.size(), at.size());
-    for (std::size_t state = 0; state < at.size(); ++state) {
+    const std::vector<double> states = one.states(), here = values();
+    ASSERT_EQ(knowns.size(), states.size());
+    for (std::size_t state = 0; state < states.size(); ++state) {
       const std::size_t known = knowns[state];
       const std::vector<double> exact = one.directional(unknowns, {{known, 1.0}});
-      const double size = std::max(std::abs(at[state]), 1e-2), step = 1e-5 * size;
-      std::vector<double> moved = at;
-      moved[state] = at[state] + step;
+      const double size = std::max(std::abs(states[state]), 1e-2), step = 1e-5 * size;
+      std::vector<double> moved = states;
+      moved[state] = states[state] + step;
       one.set_states(moved.data());
       const std::vector<double> more = values();
-      moved[state] = at[state] - step;
+      moved[state] = states[state] - step;
       one.set_states(moved.data());
       const std::vector<double> less = values();
-      one.set_states(at.data());
+      one.set_states(states.data());
       for (std::size_t k = 0; k < unknowns.size(); ++k) {
         const double difference = (more[k] - less[k]) / (2.0 * step);
         EXPECT_NEAR(exact[k], difference, 1e-5 * (std::abs(exact[k]) + std::abs(here[k]) / size) + 1e-9)

@@ -30,9 +30,9 @@ Exported exported(Design<double> design, int number) {
   std::filesystem::create_directories(folder);
   const std::string resource = fmu::resource_of(design);
   std::ofstream(folder / fmu::vehicle_resource, std::ios::binary) << resource;
-  Exported of{folder.string(), fmu::token_of(resource), {}};
-  for (const fmu::Variable& v : fmu::variables_of(design)) of.references.push_back(unsigned(v.reference()));
-  return of;
+  Exported exported{folder.string(), fmu::token_of(resource), {}};
+  for (const fmu::Variable& v : fmu::variables_of(design)) exported.references.push_back(unsigned(v.reference()));
+  return exported;
 }
 
 /// A crank, on a switched supply too, with wings on hinges and stops, two of them; a direct drive, with friction that
@@ -41,7 +41,7 @@ const std::vector<Exported>& vehicles() {
   struct All {
     std::vector<Exported> list;
     ~All() {
-      for (const Exported& of : list) std::filesystem::remove_all(of.folder);
+      for (const Exported& exported : list) std::filesystem::remove_all(exported.folder);
     }
   };
   static const All all{[] {
@@ -134,14 +134,15 @@ struct Arguments {
   double* values() { return null_values ? nullptr : numbers; }
   bool null_references, null_values;
 
-  Arguments(Input& in, const Exported& of) : references{}, numbers{} {
+  Arguments(Input& in, const Exported& exported) : references{}, numbers{} {
     const unsigned how = in.byte();
     count = how < 200 ? 1 + how % 4 : in.size();
     null_references = how == 255, null_values = how == 254;
     for (std::size_t k = 0; k < room; ++k) {
       if (k >= 4 && k >= count) break;
       const unsigned which = in.byte();
-      references[k] = which < 240 ? of.references[(which * 251u + in.byte()) % of.references.size()] : which * 997u;
+      references[k] =
+          which < 240 ? exported.references[(which * 251u + in.byte()) % exported.references.size()] : which * 997u;
       if (k < 8) numbers[k] = in.number();
     }
   }
@@ -153,17 +154,18 @@ void quiet3(void*, fmi3Status, const char*, const char*) {}
 /// One instance of one version, by the functions that both have; its own time and saved states.
 class Session {
  public:
-  Session(bool second, const Exported& of, bool co_simulation) : two_(second), of_(of), co_simulation_(co_simulation) {
+  Session(bool second, const Exported& exported, bool co_simulation)
+      : two_(second), of_(exported), co_simulation_(co_simulation) {
     if (two_) {
       static const fmi2CallbackFunctions callbacks = {quiet2, nullptr, nullptr, nullptr, nullptr};
-      instance_ = fmi2Instantiate("one", co_simulation ? fmi2CoSimulation : fmi2ModelExchange, of.token.c_str(),
-                                  ("file://" + of.folder).c_str(), &callbacks, 0, 1);
+      instance_ = fmi2Instantiate("one", co_simulation ? fmi2CoSimulation : fmi2ModelExchange, exported.token.c_str(),
+                                  ("file://" + exported.folder).c_str(), &callbacks, 0, 1);
     } else if (co_simulation) {
-      instance_ = fmi3InstantiateCoSimulation("one", of.token.c_str(), of.folder.c_str(), false, true, false, false,
-                                              nullptr, 0, nullptr, quiet3, nullptr);
+      instance_ = fmi3InstantiateCoSimulation("one", exported.token.c_str(), exported.folder.c_str(), false, true,
+                                              false, false, nullptr, 0, nullptr, quiet3, nullptr);
     } else {
-      instance_ =
-          fmi3InstantiateModelExchange("one", of.token.c_str(), of.folder.c_str(), false, true, nullptr, quiet3);
+      instance_ = fmi3InstantiateModelExchange("one", exported.token.c_str(), exported.folder.c_str(), false, true,
+                                               nullptr, quiet3);
     }
     if (!instance_) std::abort();
   }
@@ -299,8 +301,8 @@ class Session {
     void** const state = &states_[in.byte() % std::size(states_)];
     two_ ? (void)fmi2GetFMUstate(c, state) : (void)fmi3GetFMUState(c, state);
   }
-  void restore(void* c, Session& of, Input& in) {
-    void* const state = of.states_[in.byte() % std::size(states_)];
+  void restore(void* c, Session& session, Input& in) {
+    void* const state = session.states_[in.byte() % std::size(states_)];
     two_ ? (void)fmi2SetFMUstate(c, state) : (void)fmi3SetFMUState(c, state);
     // Where the importer's time is then it asks.
     const unsigned time = 0;

@@ -24,9 +24,9 @@ std::vector<std::byte> chunk_bytes(std::uint64_t chunk) {
 }
 
 std::uint64_t place_of(std::size_t column) {
-  std::uint64_t at = 64;
-  for (std::size_t c = 0; c < column; ++c) at += layout.designs * layout.bytes_of_value(c);
-  return at;
+  std::uint64_t position = 64;
+  for (std::size_t c = 0; c < column; ++c) position += layout.designs * layout.bytes_of_value(c);
+  return position;
 }
 
 std::vector<std::uint64_t> prepare(const std::filesystem::path& file) {
@@ -63,11 +63,11 @@ const Sound& sound() {
   return made;
 }
 
-void edit(std::string& file, bool length, std::size_t at, char byte) {
+void edit(std::string& file, bool length, std::size_t offset, char byte) {
   if (length) {
-    file.resize(at % (file.size() + 64));
+    file.resize(offset % (file.size() + 64));
   } else if (!file.empty()) {
-    file[at % file.size()] = byte;
+    file[offset % file.size()] = byte;
   }
 }
 
@@ -89,9 +89,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const std::vector<std::byte> stored = chunk_bytes(chunk);
       for (std::size_t column = 0; column < layout.columns(); ++column) {
         const std::size_t width = layout.bytes_of_value(column), length = std::size_t(layout.size(chunk)) * width;
-        const std::uint64_t at = place_of(column) + layout.first(chunk) * width;
-        if (at + length > now.size() ||
-            std::memcmp(now.data() + at, stored.data() + layout.begin(column), length) != 0) {
+        const std::uint64_t offset = place_of(column) + layout.first(chunk) * width;
+        if (offset + length > now.size() ||
+            std::memcmp(now.data() + offset, stored.data() + layout.begin(column), length) != 0) {
           std::abort();
         }
       }

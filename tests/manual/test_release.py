@@ -102,8 +102,8 @@ class Words(Checkout):
         return self.run_script("check-words", name)
 
     def test_words_that_were_given_up_are_named_with_place_and_replacement(self):
-        sto, told = "sto" + "rey", "to" + "ld"
-        found = self.check("page.md", f"One\nA {sto} is {told}.\n")
+        sto, said = "sto" + "rey", "to" + "ld"
+        found = self.check("page.md", f"One\nA {sto} is {said}.\n")
         self.assertEqual(found.returncode, 1)
         self.assertIn(f"page.md:2: '{sto}': use layer", found.stdout)
         self.assertIn("use reported", found.stdout)

@@ -64,14 +64,14 @@ upper = "6 mm"
 """
 ASKED = """<script>
 const areas = [...document.querySelectorAll('.area')], tips = [];
-const told = () => tips.push([...document.querySelector('.tip').children].map(line => line.textContent));
+const record = () => tips.push([...document.querySelector('.tip').children].map(line => line.textContent));
 const point = (area, across, up) => {
   const box = area.getBoundingClientRect();
   area.dispatchEvent(new PointerEvent('pointermove', {clientX: box.left + across * box.width,
                                                       clientY: box.bottom - up * box.height}));
-  told();
+  record();
 };
-const press = (area, key) => { area.dispatchEvent(new KeyboardEvent('keydown', {key, cancelable: true})); told(); };
+const press = (area, key) => { area.dispatchEvent(new KeyboardEvent('keydown', {key, cancelable: true})); record(); };
 %s
 document.title = JSON.stringify({tips, areas: areas.length, names: areas.map(a => a.getAttribute('aria-label')),
                                  tabs: areas.map(a => a.tabIndex)});

@@ -120,10 +120,10 @@ TEST(AeroLoads, DualNumbersAgreeWithDifferences) {
     for (const double pitching : {1.0, -1.0}) {
       for (const double velocity : {-310.0, -90.0, -1.0, 1.0, 90.0, 310.0}) {
         const double stroke = sign_of(velocity), h = 1e-3 * std::abs(velocity);
-        const auto at = [&](double x) { return aero_loads(w, x, stroke, pitching); };
+        const auto loads_at = [&](double x) { return aero_loads(w, x, stroke, pitching); };
         const auto dual = aero_loads(cast<J>(w), J(velocity, 0), J(stroke), J(pitching));
-        const auto p1 = at(velocity + h), m1 = at(velocity - h), p2 = at(velocity + 2.0 * h);
-        const auto m2 = at(velocity - 2.0 * h), here = at(velocity);
+        const auto p1 = loads_at(velocity + h), m1 = loads_at(velocity - h), p2 = loads_at(velocity + 2.0 * h);
+        const auto m2 = loads_at(velocity - 2.0 * h), here = loads_at(velocity);
         for (double AeroLoads<double>::* load :
              {&AeroLoads<double>::angle_of_attack, &AeroLoads<double>::lift, &AeroLoads<double>::moment,
               &AeroLoads<double>::power, &AeroLoads<double>::pitch_margin}) {
@@ -238,11 +238,11 @@ TEST(CoefficientTable, FindsThePieceThatHolds) {
     for (int row = 0; row < 3 + n; ++row) alpha.push_back(alpha.back() + std::exp(-unevenness * uniform(0.0, 1.0)));
     const std::vector<double> zero(alpha.size(), 0.0);
     const CoefficientTable table(alpha, zero, zero);
-    std::vector<double> at = alpha;
-    for (const double x : alpha) at.insert(at.end(), {std::nextafter(x, -10.0), std::nextafter(x, 1e3)});
-    for (int k = 0; k < 200; ++k) at.push_back(uniform(alpha.front() - 0.1, alpha.back() + 0.1));
-    at.insert(at.end(), {-1e300, 1e300, -INFINITY, INFINITY});
-    for (const double x : at) {
+    std::vector<double> angles = alpha;
+    for (const double x : alpha) angles.insert(angles.end(), {std::nextafter(x, -10.0), std::nextafter(x, 1e3)});
+    for (int k = 0; k < 200; ++k) angles.push_back(uniform(alpha.front() - 0.1, alpha.back() + 0.1));
+    angles.insert(angles.end(), {-1e300, 1e300, -INFINITY, INFINITY});
+    for (const double x : angles) {
       const auto after = std::upper_bound(alpha.begin(), alpha.end(), x);
       ASSERT_EQ(table.lookup().knots_up_to(x), after - alpha.begin()) << x;
     }

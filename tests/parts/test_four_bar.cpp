@@ -54,7 +54,7 @@ TEST(FourBar, SlopesAgreeWithDifferences) {
   for (double theta = 0.05; theta < two_pi; theta += 0.17) {
     const CrankKinematics<double> k = at(f, theta), before = at(f, theta - h), after = at(f, theta + h);
     EXPECT_NEAR(k.stroke_slope, (stroke_angle(after) - stroke_angle(before)) / (2.0 * h), 1e-7) << theta;
-    EXPECT_NEAR(k.stroke_curve, (after.stroke_slope - before.stroke_slope) / (2.0 * h), 2e-7) << theta;
+    EXPECT_NEAR(k.stroke_second_derivative, (after.stroke_slope - before.stroke_slope) / (2.0 * h), 2e-7) << theta;
   }
 }
 
@@ -86,9 +86,9 @@ TEST(FourBar, DualNumbersAgreeWithDifferences) {
       };
       expect(stroke_angle(jets), stroke_angle(high), stroke_angle(low), "beta");
       expect(jets.stroke_slope, high.stroke_slope, low.stroke_slope, "B1");
-      expect(jets.stroke_curve, high.stroke_curve, low.stroke_curve, "B2");
-      expect(jets.wing_lever, high.wing_lever, low.wing_lever, "g");
-      expect(jets.crank_lever, high.crank_lever, low.crank_lever, "h");
+      expect(jets.stroke_second_derivative, high.stroke_second_derivative, low.stroke_second_derivative, "B2");
+      expect(jets.wing_jacobian, high.wing_jacobian, low.wing_jacobian, "g");
+      expect(jets.crank_jacobian, high.crank_jacobian, low.crank_jacobian, "h");
     }
   }
 }
@@ -97,12 +97,12 @@ TEST(FourBar, ConservesPowerAndItsLeverIsThatOfTheTransmissionAngle) {
   const FourBar<double> f = four_bar(2.5);
   for (double theta = 0.0; theta < two_pi; theta += 0.1) {
     const CrankKinematics<double> k = at(f, theta);
-    EXPECT_NEAR(k.crank_lever, k.wing_lever * k.stroke_slope, 1e-17) << theta;
+    EXPECT_NEAR(k.crank_jacobian, k.wing_jacobian * k.stroke_slope, 1e-17) << theta;
     const double phi = stroke_angle(k) / f.stroke_ratio + f.ground_angle;
     const std::complex<double> coupler =
         f.ground_length + std::polar(f.rocker_length, phi) - std::polar(f.crank_radius, theta);
     const double mu = phi - std::arg(coupler);
-    EXPECT_NEAR(k.wing_lever, f.rocker_length * std::sin(mu) / f.stroke_ratio, 1e-16) << theta;
+    EXPECT_NEAR(k.wing_jacobian, f.rocker_length * std::sin(mu) / f.stroke_ratio, 1e-16) << theta;
   }
 }
 
@@ -127,7 +127,7 @@ TEST(FourBar, ParallelogramTurnsItsRockerWithItsCrank) {
     const CrankKinematics<double> k = at(f, theta);
     EXPECT_NEAR(stroke_angle(k), theta, 1e-14);
     EXPECT_NEAR(k.stroke_slope, 1.0, 1e-13);
-    EXPECT_NEAR(k.stroke_curve, 0.0, 1e-12);
+    EXPECT_NEAR(k.stroke_second_derivative, 0.0, 1e-12);
   }
 }
 
@@ -148,8 +148,8 @@ TEST(FourBar, LongRockerIsASlider) {
       const double cos2_beta = 1.0 / (1.0 + square(s.tan_stroke));
       off = std::max({off, std::abs(-stroke_angle(k) - s.tan_stroke),
                       std::abs(-k.stroke_slope - s.stroke_slope / cos2_beta),
-                      std::abs(k.wing_lever - s.wing_lever * cos2_beta) / slider.hinge_offset,
-                      std::abs(-k.crank_lever - s.crank_lever) / slider.crank_radius});
+                      std::abs(k.wing_jacobian - s.wing_jacobian * cos2_beta) / slider.hinge_offset,
+                      std::abs(-k.crank_jacobian - s.crank_jacobian) / slider.crank_radius});
     }
     EXPECT_LT(off, 0.02 / p);
     if (before > 0.0) {

@@ -84,14 +84,14 @@ TEST(Motor, SteadyMotorKeepsPower) {
     EXPECT_NEAR(steady_motor(m, v, free).torque, 0.0, 1e-17);
     EXPECT_NEAR(steady_motor(m, v, 0.0).current, v / 9.0, 1e-15);
     for (const double omega : {0.1 * free, 0.9 * free, 1.2 * free}) {
-      const SteadyMotor<double> at = steady_motor(m, v, omega);
-      const MotorLoads<double> loads = motor_loads(m, v, at.current, omega);
+      const SteadyMotor<double> steady = steady_motor(m, v, omega);
+      const MotorLoads<double> loads = motor_loads(m, v, steady.current, omega);
       EXPECT_NEAR(loads.inductive_voltage, 0.0, 1e-14);
       const double before_gear =
-          at.power_electrical - loads.power_copper - loads.power_viscous - m.friction_torque * omega;
+          steady.power_electrical - loads.power_copper - loads.power_viscous - m.friction_torque * omega;
       const double e = before_gear > 0.0 ? m.gear_efficiency : 1.0 / m.gear_efficiency;
-      EXPECT_NEAR(at.power_mechanical, e * before_gear, 1e-15);
-      EXPECT_EQ(at.torque > 0.0, omega < free);
+      EXPECT_NEAR(steady.power_mechanical, e * before_gear, 1e-15);
+      EXPECT_EQ(steady.torque > 0.0, omega < free);
     }
   }
   EXPECT_EQ(free_speed(reference_motor, 0.01), 0.0);

@@ -24,15 +24,15 @@ struct PitchingPair {
 PitchingPair pitching_pair(NormalForce normal_force = NormalForce::lift_and_drag, double air_density = sea_level) {
   const Planform<double> outline = outline_of(PlanformShape::semi_ellipse, 3e-3, wing_length, wing_root);
   const ChordMoments<double> s = chord_moments(outline, two_wings);
-  PitchingPair of;
-  of.w = {air_density, 5e-3, s.s2, s.s3, translational_2022()};
-  of.p.hinge = hinges_together<double>({3e-4, 2e-7}, two_wings);
-  of.p.pitch_inertia = two_wings * 4e-9;
-  of.p.mass_product = two_wings * 1.2e-8;
-  of.p.moments = pitch_chord_moments(outline, two_wings);
-  of.p.air = pitch_added_mass(air_density, of.p.moments);
-  of.p.normal_force = normal_force;
-  return of;
+  PitchingPair pair;
+  pair.w = {air_density, 5e-3, s.s2, s.s3, translational_2022()};
+  pair.p.hinge = hinges_together<double>({3e-4, 2e-7}, two_wings);
+  pair.p.pitch_inertia = two_wings * 4e-9;
+  pair.p.mass_product = two_wings * 1.2e-8;
+  pair.p.moments = pitch_chord_moments(outline, two_wings);
+  pair.p.air = pitch_added_mass(air_density, pair.p.moments);
+  pair.p.normal_force = normal_force;
+  return pair;
 }
 
 PitchState<double> random_pitching(std::mt19937_64& random) {
@@ -87,11 +87,11 @@ TEST(PitchChordMoments, OfTablesAreExact) {
 }
 
 TEST(PitchingWings, NormalForceSetIsItsPublishedForm) {
-  const PitchingPair of = pitching_pair(NormalForce::normal_force);
+  const PitchingPair pair = pitching_pair(NormalForce::normal_force);
   for (double alpha = -0.5; alpha < 3.6; alpha += 0.07) {
     const double published = 1.8 * std::sin(2.0 * alpha) * std::cos(alpha) + 1.95 * std::sin(alpha) -
                              1.5 * std::cos(2.0 * alpha) * std::sin(alpha);
-    EXPECT_NEAR(normal_force_coefficient(of.w, of.p, alpha), published, 1e-14);
+    EXPECT_NEAR(normal_force_coefficient(pair.w, pair.p, alpha), published, 1e-14);
   }
 }
 
@@ -105,16 +105,16 @@ TEST(PitchingWings, CentreOfPressureMovesFromTheLeadingEdgeBackwards) {
 // Section 12's equations are those of Lagrange with its kinetic energy: the momenta's rates less the energy's slope.
 TEST(PitchingWings, InertiaIsThatOfTheKineticEnergy) {
   using J = Jet<1>;
-  const PitchingPair of = pitching_pair(NormalForce::lift_and_drag, 0.0);
+  const PitchingPair pair = pitching_pair(NormalForce::lift_and_drag, 0.0);
   PitchingPair with_air = pitching_pair();
   with_air.w.air_density = 0.0;  // its inertia, without its forces
   std::mt19937_64 random(14);
-  for (const PitchingPair& each : {of, with_air}) {
+  for (const PitchingPair& each : {pair, with_air}) {
     PitchingWings<double> p = each.p;
     p.hinge = {};
     const PitchingWings<J> pj = cast<J>(p);
     for (int n = 0; n < 50; ++n) {
-      const PitchState<double> at = random_pitching(random);
+      const PitchState<double> state = random_pitching(random);
       const struct {
         double stroke, pitch;
       } acc{3e4 * std::sin(double(n)), 5e4 * std::cos(2.0 * n)};
@@ -123,16 +123,16 @@ TEST(PitchingWings, InertiaIsThatOfTheKineticEnergy) {
         x.v[0] = rate;
         return x;
       };
-      const auto moving =
-          pitch_state(along(at.psi, at.velocity), along(at.velocity, acc.pitch), along(at.stroke_velocity, acc.stroke));
+      const auto moving = pitch_state(along(state.psi, state.velocity), along(state.velocity, acc.pitch),
+                                      along(state.stroke_velocity, acc.stroke));
       const PitchInertia<J> m = pitch_inertia(pj, J(pair_inertia), moving);
       const J p_b = m.bb * moving.stroke_velocity + m.bp * moving.velocity;
       const J p_p = m.bp * moving.stroke_velocity + m.pp * moving.velocity;
-      const auto turned = pitch_state(J(at.psi, 0), J(at.velocity), J(at.stroke_velocity));
+      const auto turned = pitch_state(J(state.psi, 0), J(state.velocity), J(state.stroke_velocity));
       const double slope = kinetic_energy(pitch_inertia(pj, J(pair_inertia), turned), turned).v[0];
 
       // The momentum's rate of the stroke drives it, the pitch is driven by p_p' - slope: zero for the free one.
-      const WingsAtPitch<double> w = wings_at_pitch(each.w, p, pair_inertia, at, 1.0, 1.0, 1.0);
+      const WingsAtPitch<double> w = wings_at_pitch(each.w, p, pair_inertia, state, 1.0, 1.0, 1.0);
       const double m_pp = m.pp.a, m_bp = m.bp.a, drive = p_p.v[0] - slope;
       const double pitch = acc.pitch - w.free_acceleration - w.coupling * acc.stroke;
       EXPECT_NEAR(m_pp * pitch, drive, 1e-12 * (std::abs(m_pp * acc.pitch) + std::abs(m_bp * acc.stroke)));
@@ -147,29 +147,29 @@ TEST(PitchingWings, EveryWattOfTheStrokeIsAccountedFor) {
   using J = Jet<1>;
   std::mt19937_64 random(15);
   for (const NormalForce normal_force : {NormalForce::lift_and_drag, NormalForce::normal_force}) {
-    const PitchingPair of = pitching_pair(normal_force);
-    const PitchingWings<J> pj = cast<J>(of.p);
+    const PitchingPair pair = pitching_pair(normal_force);
+    const PitchingWings<J> pj = cast<J>(pair.p);
     for (int n = 0; n < 50; ++n) {
-      const PitchState<double> at = random_pitching(random);
-      const WingsAtPitch<double> w =
-          wings_at_pitch(of.w, of.p, pair_inertia, at, sign_of(at.stroke_velocity), sign_of(at.velocity), 1.0);
+      const PitchState<double> state = random_pitching(random);
+      const WingsAtPitch<double> w = wings_at_pitch(pair.w, pair.p, pair_inertia, state, sign_of(state.stroke_velocity),
+                                                    sign_of(state.velocity), 1.0);
       const double stroke_acceleration = 4e4 * std::cos(double(n));
       const double pitch_acceleration = w.free_acceleration + w.coupling * stroke_acceleration;
-      J psi(at.psi), turn(at.velocity), stroke(at.stroke_velocity);
-      psi.v[0] = at.velocity;
+      J psi(state.psi), turn(state.velocity), stroke(state.stroke_velocity);
+      psi.v[0] = state.velocity;
       turn.v[0] = pitch_acceleration;
       stroke.v[0] = stroke_acceleration;
       const auto moving = pitch_state(psi, turn, stroke);
       const J energy =
           kinetic_energy(pitch_inertia(pj, J(pair_inertia), moving), moving) + hinge_loads(pj.hinge, psi, turn).energy;
-      const double drive = (w.inertia * stroke_acceleration + w.moment) * at.stroke_velocity;
+      const double drive = (w.inertia * stroke_acceleration + w.moment) * state.stroke_velocity;
       const double size = std::abs(drive) + std::abs(energy.v[0]) + std::abs(w.aero.power);
       EXPECT_NEAR(drive, energy.v[0] + w.aero.power + w.hinge.loss, 1e-12 * size);
       // Held by a stop, the wings are one body.
-      const PitchState<double> still = pitch_state(at.psi, 0.0, at.stroke_velocity);
+      const PitchState<double> still = pitch_state(state.psi, 0.0, state.stroke_velocity);
       const WingsAtPitch<double> held =
-          wings_at_pitch(of.w, of.p, pair_inertia, still, sign_of(at.stroke_velocity), 1.0, -1.0);
-      EXPECT_EQ(held.inertia, pitch_inertia(of.p, pair_inertia, still).bb);
+          wings_at_pitch(pair.w, pair.p, pair_inertia, still, sign_of(state.stroke_velocity), 1.0, -1.0);
+      EXPECT_EQ(held.inertia, pitch_inertia(pair.p, pair_inertia, still).bb);
       EXPECT_EQ(held.moment, held.aero.stroke_moment);
       EXPECT_EQ(held.free_acceleration, 0.0);
       EXPECT_EQ(held.coupling, 0.0);
@@ -179,57 +179,57 @@ TEST(PitchingWings, EveryWattOfTheStrokeIsAccountedFor) {
 
 TEST(PitchingWings, BothStrokesAreEachOthersMirrorImage) {
   std::mt19937_64 random(16);
-  const PitchingPair of = pitching_pair();
+  const PitchingPair pair = pitching_pair();
   for (int n = 0; n < 50; ++n) {
-    const PitchState<double> at = random_pitching(random),
-                             mirrored = pitch_state(-at.psi, -at.velocity, -at.stroke_velocity);
-    const double stroke = sign_of(at.stroke_velocity), turn = sign_of(at.velocity);
-    const auto a = wings_at_pitch(of.w, of.p, pair_inertia, at, stroke, turn, 1.0);
-    const auto b = wings_at_pitch(of.w, of.p, pair_inertia, mirrored, -stroke, -turn, 1.0);
+    const PitchState<double> state = random_pitching(random),
+                             mirrored = pitch_state(-state.psi, -state.velocity, -state.stroke_velocity);
+    const double stroke = sign_of(state.stroke_velocity), turn = sign_of(state.velocity);
+    const auto a = wings_at_pitch(pair.w, pair.p, pair_inertia, state, stroke, turn, 1.0);
+    const auto b = wings_at_pitch(pair.w, pair.p, pair_inertia, mirrored, -stroke, -turn, 1.0);
     EXPECT_EQ(a.inertia, b.inertia);
     EXPECT_EQ(a.moment, -b.moment);
     EXPECT_EQ(a.free_acceleration, -b.free_acceleration);
     EXPECT_EQ(a.coupling, b.coupling);
     EXPECT_EQ(a.aero.power, b.aero.power);
-    EXPECT_EQ(lift_at_pitch(of.p, a, at, 1e4, -2e4), lift_at_pitch(of.p, b, mirrored, -1e4, 2e4));
+    EXPECT_EQ(lift_at_pitch(pair.p, a, state, 1e4, -2e4), lift_at_pitch(pair.p, b, mirrored, -1e4, 2e4));
   }
 }
 
 TEST(PitchingWings, WingsThatStandUprightMeetTheAirAsUnderALawWithoutPitching) {
-  PitchingPair of = pitching_pair();
-  of.w.pitch_coefficient = 0.0;
-  of.w.added_inertia = added_inertia_of(sea_level, of.p.moments.s22);
+  PitchingPair pair = pitching_pair();
+  pair.w.pitch_coefficient = 0.0;
+  pair.w.added_inertia = added_inertia_of(sea_level, pair.p.moments.s22);
   for (const double velocity : {-120.0, -3.0, 40.0, 150.0}) {
-    const PitchState<double> at = pitch_state(0.0, 0.0, velocity);
-    const AeroLoads<double> law = aero_loads(of.w, velocity, sign_of(velocity), 1.0);
-    const WingsAtPitch<double> w = wings_at_pitch(of.w, of.p, pair_inertia, at, sign_of(velocity), 1.0, -1.0);
+    const PitchState<double> state = pitch_state(0.0, 0.0, velocity);
+    const AeroLoads<double> law = aero_loads(pair.w, velocity, sign_of(velocity), 1.0);
+    const WingsAtPitch<double> w = wings_at_pitch(pair.w, pair.p, pair_inertia, state, sign_of(velocity), 1.0, -1.0);
     EXPECT_NEAR(w.aero.stroke_moment, law.moment, 1e-14 * std::abs(law.moment));
     EXPECT_NEAR(w.aero.power, law.power, 1e-14 * law.power);
     EXPECT_EQ(w.aero.angle_of_attack, law.angle_of_attack);
     EXPECT_NEAR(w.inertia, pair_inertia + law.added_inertia, 1e-14 * w.inertia);
-    EXPECT_EQ(lift_at_pitch(of.p, w, at, 1e4, 0.0), 0.0);
+    EXPECT_EQ(lift_at_pitch(pair.p, w, state, 1e4, 0.0), 0.0);
   }
 }
 
 // Under the pitch law the stroke pays for what turns the wings: docs/model.md, section 10 against section 12.
 TEST(PitchingWings, HeldToThePitchLawTheyTakeTheMomentOfTheAddedMassUnderIt) {
-  PitchingPair of = pitching_pair();
-  const double J_a = of.p.air.rr, C_alpha = 5e-3;
-  of.p.air = {};
-  of.p.air.rr = J_a;
-  of.p.pitch_inertia = 1e-30;
-  of.p.mass_product = 0.0;
-  of.p.hinge = {};
-  of.w.air_density = 0.0;
-  of.w.pitch_coefficient = C_alpha;
-  of.w.added_inertia = J_a;
+  PitchingPair pair = pitching_pair();
+  const double J_a = pair.p.air.rr, C_alpha = 5e-3;
+  pair.p.air = {};
+  pair.p.air.rr = J_a;
+  pair.p.pitch_inertia = 1e-30;
+  pair.p.mass_product = 0.0;
+  pair.p.hinge = {};
+  pair.w.air_density = 0.0;
+  pair.w.pitch_coefficient = C_alpha;
+  pair.w.added_inertia = J_a;
   for (const double velocity : {-150.0, -20.0, 60.0, 200.0}) {
     const double acceleration = 2.5e4, stroke = sign_of(velocity);
-    const PitchState<double> at = pitch_state(-C_alpha * velocity, -C_alpha * acceleration, velocity);
-    const auto wings = wings_at_pitch(of.w, of.p, 0.0, at, stroke, sign_of(at.velocity), -1.0);
+    const PitchState<double> state = pitch_state(-C_alpha * velocity, -C_alpha * acceleration, velocity);
+    const auto wings = wings_at_pitch(pair.w, pair.p, 0.0, state, stroke, sign_of(state.velocity), -1.0);
     const double stroke_power = (wings.inertia * acceleration + wings.moment) * velocity;
-    const double turning_power = -wings.pitching_moment * at.velocity;
-    const double law = aero_loads(of.w, velocity, stroke, 1.0).added_inertia * acceleration * velocity;
+    const double turning_power = -wings.pitching_moment * state.velocity;
+    const double law = aero_loads(pair.w, velocity, stroke, 1.0).added_inertia * acceleration * velocity;
     EXPECT_NEAR(stroke_power + turning_power, law, 1e-12 * std::abs(law));
     EXPECT_GT(std::abs(turning_power), 1e-3 * std::abs(law));
   }
@@ -237,10 +237,10 @@ TEST(PitchingWings, HeldToThePitchLawTheyTakeTheMomentOfTheAddedMassUnderIt) {
 
 // With the force along the chord in full the lift of the added mass is the rate of the air's momentum.
 TEST(PitchingWings, AllOfTheEdgeSuctionMakesTheLiftARateOfMomentum) {
-  PitchingPair of = pitching_pair();
+  PitchingPair pair = pitching_pair();
   using J = Jet<1>;
-  const PitchingWings<J> dual = cast<J>(of.p);
-  of.w.air_density = 0.0;  // the added mass stays
+  const PitchingWings<J> dual = cast<J>(pair.p);
+  pair.w.air_density = 0.0;  // the added mass stays
   for (const auto& [psi, velocity, stroke] : {std::array{0.5, 150.0, 80.0}, {-0.9, 60.0, -40.0}, {0.2, -220.0, 0.0}}) {
     const double stroke_acceleration = 3e4, pitch_acceleration = -5e4;
     J at_psi(psi), at_velocity(velocity), at_stroke(stroke);
@@ -249,14 +249,14 @@ TEST(PitchingWings, AllOfTheEdgeSuctionMakesTheLiftARateOfMomentum) {
     at_stroke.v[0] = stroke_acceleration;
     const PitchState<J> moving = pitch_state(at_psi, at_velocity, at_stroke);
     const double rate = J(air_momentum(dual, moving) * moving.sin_psi).v[0];
-    const PitchState<double> at = pitch_state(psi, velocity, stroke);
-    const auto wings = wings_at_pitch(of.w, of.p, pair_inertia, at, sign_of(stroke), sign_of(velocity), 1.0);
+    const PitchState<double> state = pitch_state(psi, velocity, stroke);
+    const auto wings = wings_at_pitch(pair.w, pair.p, pair_inertia, state, sign_of(stroke), sign_of(velocity), 1.0);
     const auto lift = [&](double suction) {
-      of.p.edge_suction = suction;
-      return lift_at_pitch(of.p, wings, at, stroke_acceleration, pitch_acceleration);
+      pair.p.edge_suction = suction;
+      return lift_at_pitch(pair.p, wings, state, stroke_acceleration, pitch_acceleration);
     };
     EXPECT_NEAR(lift(1.0), -rate, 1e-13 * std::abs(rate));
-    EXPECT_NEAR(lift(0.0) - lift(1.0), chordwise_lift(of.p, at), 1e-12 * std::abs(rate));
+    EXPECT_NEAR(lift(0.0) - lift(1.0), chordwise_lift(pair.p, state), 1e-12 * std::abs(rate));
     EXPECT_GT(std::abs(lift(0.0) - lift(1.0)), 1e-6);
     EXPECT_NEAR(lift(0.25), 0.75 * lift(0.0) + 0.25 * lift(1.0), 1e-13 * std::abs(rate));
   }
@@ -264,79 +264,80 @@ TEST(PitchingWings, AllOfTheEdgeSuctionMakesTheLiftARateOfMomentum) {
 
 TEST(PitchingWings, DragMakesThePitchLagAndLagLifts) {
   for (const NormalForce normal_force : {NormalForce::lift_and_drag, NormalForce::normal_force}) {
-    PitchingPair of = pitching_pair(normal_force);
-    of.p.air = {};
+    PitchingPair pair = pitching_pair(normal_force);
+    pair.p.air = {};
     for (const double velocity : {-120.0, 120.0}) {
       const double stroke = sign_of(velocity);
-      const auto upright = wings_at_pitch(of.w, of.p, pair_inertia, pitch_state(0.0, 0.0, velocity), stroke, 1.0, 1.0);
+      const auto upright =
+          wings_at_pitch(pair.w, pair.p, pair_inertia, pitch_state(0.0, 0.0, velocity), stroke, 1.0, 1.0);
       EXPECT_LT(upright.free_acceleration * velocity, 0.0);
       const PitchState<double> lagging = pitch_state(-stroke * 0.8, 0.0, velocity);
-      const auto loads = aero_loads(of.w, of.p, lagging, stroke, 1.0);
+      const auto loads = aero_loads(pair.w, pair.p, lagging, stroke, 1.0);
       EXPECT_NEAR(loads.angle_of_attack, 0.5 * pi - 0.8, 1e-15);
-      const auto w = wings_at_pitch(of.w, of.p, pair_inertia, lagging, stroke, 1.0, 1.0);
-      EXPECT_GT(lift_at_pitch(of.p, w, lagging, 0.0, 0.0), 0.0);
+      const auto w = wings_at_pitch(pair.w, pair.p, pair_inertia, lagging, stroke, 1.0, 1.0);
+      EXPECT_GT(lift_at_pitch(pair.p, w, lagging, 0.0, 0.0), 0.0);
     }
   }
 }
 
 // A slow stroke of light wings: the hinge balances the air, which is the law of section 3, derived.
 TEST(PitchingWings, StaticBalanceHoldsTheHingeAgainstTheAir) {
-  PitchingPair of = pitching_pair(NormalForce::normal_force);
-  of.p.air = {};
-  of.p.pitch_inertia = 1e-30;
-  of.p.mass_product = 0.0;
+  PitchingPair pair = pitching_pair(NormalForce::normal_force);
+  pair.p.air = {};
+  pair.p.pitch_inertia = 1e-30;
+  pair.p.mass_product = 0.0;
   const double velocity = 100.0;
   double psi = 0.0;
   for (int n = 0; n < 200; ++n) {
-    psi = -aero_loads(of.w, of.p, pitch_state(psi, 0.0, velocity), 1.0, 1.0).pitch_moment / of.p.hinge.stiffness;
+    psi = -aero_loads(pair.w, pair.p, pitch_state(psi, 0.0, velocity), 1.0, 1.0).pitch_moment / pair.p.hinge.stiffness;
   }
-  const auto w = wings_at_pitch(of.w, of.p, pair_inertia, pitch_state(psi, 0.0, velocity), 1.0, 1.0, 1.0);
+  const auto w = wings_at_pitch(pair.w, pair.p, pair_inertia, pitch_state(psi, 0.0, velocity), 1.0, 1.0, 1.0);
   EXPECT_LT(psi, -0.1);
-  EXPECT_NEAR(w.pitching_moment, 0.0, 1e-14 * of.p.hinge.stiffness);
+  EXPECT_NEAR(w.pitching_moment, 0.0, 1e-14 * pair.p.hinge.stiffness);
 }
 
 TEST(PitchingWings, RotationAndItsDampingTakeTheirPower) {
-  PitchingPair of = pitching_pair();
+  PitchingPair pair = pitching_pair();
   // Turning at rest of the stroke: damping alone.
   for (const double velocity : {-200.0, 200.0}) {
-    const auto loads = aero_loads(of.w, of.p, pitch_state(0.4, velocity, 0.0), 1.0, sign_of(velocity));
-    EXPECT_NEAR(loads.power, 0.125 * sea_level * 5.0 * std::pow(200.0, 3) * of.p.moments.s40, 1e-14 * loads.power);
+    const auto loads = aero_loads(pair.w, pair.p, pitch_state(0.4, velocity, 0.0), 1.0, sign_of(velocity));
+    EXPECT_NEAR(loads.power, 0.125 * sea_level * 5.0 * std::pow(200.0, 3) * pair.p.moments.s40, 1e-14 * loads.power);
     EXPECT_EQ(loads.normal_force, 0.0);
   }
   // A wing whose angle of attack grows is pressed back by more, one whose angle falls by less.
-  const auto grows = aero_loads(of.w, of.p, pitch_state(-0.5, 100.0, 80.0), 1.0, 1.0);
-  const auto falls = aero_loads(of.w, of.p, pitch_state(-0.5, -100.0, 80.0), 1.0, -1.0);
-  EXPECT_NEAR(grows.normal_force - falls.normal_force, 2.0 * 0.75 * pi * sea_level * 80.0 * 100.0 * of.p.moments.s21,
+  const auto grows = aero_loads(pair.w, pair.p, pitch_state(-0.5, 100.0, 80.0), 1.0, 1.0);
+  const auto falls = aero_loads(pair.w, pair.p, pitch_state(-0.5, -100.0, 80.0), 1.0, -1.0);
+  EXPECT_NEAR(grows.normal_force - falls.normal_force, 2.0 * 0.75 * pi * sea_level * 80.0 * 100.0 * pair.p.moments.s21,
               1e-12 * grows.normal_force);
-  of.p.rotational_coefficient = 0.0;
-  EXPECT_EQ(aero_loads(of.w, of.p, pitch_state(-0.5, 100.0, 80.0), 1.0, 1.0).normal_force,
-            aero_loads(of.w, of.p, pitch_state(-0.5, -100.0, 80.0), 1.0, -1.0).normal_force);
+  pair.p.rotational_coefficient = 0.0;
+  EXPECT_EQ(aero_loads(pair.w, pair.p, pitch_state(-0.5, 100.0, 80.0), 1.0, 1.0).normal_force,
+            aero_loads(pair.w, pair.p, pitch_state(-0.5, -100.0, 80.0), 1.0, -1.0).normal_force);
 }
 
 TEST(PitchingWings, DualNumbersAgreeWithDifferences) {
   using J = Jet<3>;
   std::mt19937_64 random(17);
-  const PitchingPair of = pitching_pair();
-  const BladeElement<J> wj = cast<J>(of.w);
-  const PitchingWings<J> pj = cast<J>(of.p);
+  const PitchingPair pair = pitching_pair();
+  const BladeElement<J> wj = cast<J>(pair.w);
+  const PitchingWings<J> pj = cast<J>(pair.p);
   for (int n = 0; n < 40; ++n) {
-    PitchState<double> at = random_pitching(random);
-    if (n == 0) at = pitch_state(0.3, 0.0, 0.0);  // a reversal of both
-    const double stroke = sign_of(at.stroke_velocity), turn = sign_of(at.velocity);
+    PitchState<double> state = random_pitching(random);
+    if (n == 0) state = pitch_state(0.3, 0.0, 0.0);  // a reversal of both
+    const double stroke = sign_of(state.stroke_velocity), turn = sign_of(state.velocity);
     const auto values = [&](double psi, double velocity, double stroke_velocity) {
       const PitchState<double> s = pitch_state(psi, velocity, stroke_velocity);
-      const auto w = wings_at_pitch(of.w, of.p, pair_inertia, s, stroke, turn, 1.0);
+      const auto w = wings_at_pitch(pair.w, pair.p, pair_inertia, s, stroke, turn, 1.0);
       return std::array{w.inertia,  w.moment,     w.free_acceleration,
-                        w.coupling, w.aero.power, lift_at_pitch(of.p, w, s, 1e4, 2e4)};
+                        w.coupling, w.aero.power, lift_at_pitch(pair.p, w, s, 1e4, 2e4)};
     };
-    const PitchState<J> s = pitch_state(J(at.psi, 0), J(at.velocity, 1), J(at.stroke_velocity, 2));
+    const PitchState<J> s = pitch_state(J(state.psi, 0), J(state.velocity, 1), J(state.stroke_velocity, 2));
     const auto w = wings_at_pitch(wj, pj, J(pair_inertia), s, J(stroke), J(turn), J(1.0));
     const std::array dual{w.inertia,  w.moment,     w.free_acceleration,
                           w.coupling, w.aero.power, lift_at_pitch(pj, w, s, J(1e4), J(2e4))};
     const double h[] = {1e-4, 0.05, 0.05};
     for (int k = 0; k < 3; ++k) {
       const auto moved = [&](double by) {
-        return values(at.psi + (k == 0) * by, at.velocity + (k == 1) * by, at.stroke_velocity + (k == 2) * by);
+        return values(state.psi + (k == 0) * by, state.velocity + (k == 1) * by, state.stroke_velocity + (k == 2) * by);
       };
       const auto a = moved(-2.0 * h[k]), b = moved(-h[k]), c = moved(h[k]), d = moved(2.0 * h[k]);
       for (std::size_t i = 0; i < dual.size(); ++i) {

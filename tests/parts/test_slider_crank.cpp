@@ -73,7 +73,7 @@ TEST(SliderCrank, SlopeAndCurveAreTheDerivativesOfTheStrokeAngle) {
       const auto beta = [&](long double x) { return stroke(c, x); };
       const auto k = at(c, theta);
       EXPECT_NEAR(k.stroke_slope, slope(beta, theta), 1e-10) << "theta " << theta;
-      EXPECT_NEAR(k.stroke_curve, curve(beta, theta), 1e-10) << "theta " << theta;
+      EXPECT_NEAR(k.stroke_second_derivative, curve(beta, theta), 1e-10) << "theta " << theta;
     }
   }
 }
@@ -84,7 +84,7 @@ TEST(SliderCrank, CrankLeverIsCosGammaTimesSliderSlope) {
     const SliderCrank<double> c = random_crank(random);
     for (double theta = 0.0; theta < two_pi; theta += 0.2) {
       const double gamma = std::asin(c.crank_radius * std::cos(theta) / c.rod_length);
-      const double h = at(c, theta).crank_lever;
+      const double h = at(c, theta).crank_jacobian;
       EXPECT_NEAR(h, std::cos(gamma) * slope([&](long double x) { return height(c, x); }, theta),
                   1e-10 * c.crank_radius);
       // The paper's form of it (5).
@@ -100,7 +100,8 @@ TEST(SliderCrank, VirtualWorkConservesPowerToRounding) {
     const SliderCrank<double> c = random_crank(random);
     for (double theta = 0.0; theta < two_pi; theta += 0.1) {
       const auto k = at(c, theta);
-      EXPECT_NEAR(k.wing_lever * k.stroke_slope, k.crank_lever, 2e-15 * std::abs(k.crank_lever)) << "theta " << theta;
+      EXPECT_NEAR(k.wing_jacobian * k.stroke_slope, k.crank_jacobian, 2e-15 * std::abs(k.crank_jacobian))
+          << "theta " << theta;
     }
   }
 }
@@ -111,16 +112,16 @@ TEST(SliderCrank, RodForceMissesPowerByAKnownFactor) {
     const auto k = at(reference, theta);
     const double gamma = std::asin(0.25 * std::cos(theta)), beta = stroke_angle(k);
     const double factor = std::cos(beta) * std::cos(beta) * (1.0 + std::tan(gamma) * std::tan(beta));
-    EXPECT_NEAR(k.wing_lever * k.stroke_slope, factor * k.crank_lever, 1e-14 * reference.crank_radius);
+    EXPECT_NEAR(k.wing_jacobian * k.stroke_slope, factor * k.crank_jacobian, 1e-14 * reference.crank_radius);
     if (std::abs(beta) > 0.3) {
       EXPECT_GT(std::abs(1.0 - factor), 0.02) << "theta " << theta;
     }
   }
   const auto dead_centre = crank_kinematics(reference, 1.0, 0.0);
-  EXPECT_DOUBLE_EQ(dead_centre.wing_lever, 6e-3);
+  EXPECT_DOUBLE_EQ(dead_centre.wing_jacobian, 6e-3);
   SliderCrank<double> other = reference;
   other.formulation = Formulation::virtual_work;
-  EXPECT_DOUBLE_EQ(crank_kinematics(other, 1.0, 0.0).wing_lever, 6e-3 * 61.0 / 36.0);
+  EXPECT_DOUBLE_EQ(crank_kinematics(other, 1.0, 0.0).wing_jacobian, 6e-3 * 61.0 / 36.0);
 }
 
 TEST(SliderCrank, FormulationsShareTheirKinematics) {
@@ -130,8 +131,8 @@ TEST(SliderCrank, FormulationsShareTheirKinematics) {
     const auto a = at(reference, theta), b = at(other, theta);
     EXPECT_EQ(stroke_angle(a), stroke_angle(b));
     EXPECT_EQ(a.stroke_slope, b.stroke_slope);
-    EXPECT_EQ(a.stroke_curve, b.stroke_curve);
-    EXPECT_EQ(a.crank_lever, b.crank_lever);
+    EXPECT_EQ(a.stroke_second_derivative, b.stroke_second_derivative);
+    EXPECT_EQ(a.crank_jacobian, b.crank_jacobian);
   }
 }
 
@@ -139,17 +140,17 @@ TEST(SliderCrank, WingStandsStillAtTheDeadCentres) {
   for (const double sine : {1.0, -1.0}) {
     const auto k = crank_kinematics(reference, sine, 0.0);
     EXPECT_EQ(k.stroke_slope, 0.0);
-    EXPECT_EQ(k.crank_lever, 0.0);
+    EXPECT_EQ(k.crank_jacobian, 0.0);
     EXPECT_NEAR(stroke_angle(k), sine * std::atan(5.0 / 6.0), 1e-15);
-    EXPECT_LT(sine * k.stroke_curve, 0.0);
+    EXPECT_LT(sine * k.stroke_second_derivative, 0.0);
   }
 }
 
 TEST(SliderCrank, CrankTurningUpwardsRaisesTheWing) {
   const auto k = crank_kinematics(reference, 0.0, 1.0);
   EXPECT_GT(k.stroke_slope, 0.0);
-  EXPECT_GT(k.crank_lever, 0.0);
-  EXPECT_GT(k.wing_lever, 0.0);
+  EXPECT_GT(k.crank_jacobian, 0.0);
+  EXPECT_GT(k.wing_jacobian, 0.0);
 }
 
 TEST(SliderCrank, LongRodMovesTheSliderLikeASine) {
@@ -160,7 +161,7 @@ TEST(SliderCrank, LongRodMovesTheSliderLikeASine) {
     const double tan_beta = 5.0 / 6.0 * std::sin(theta), cos2 = 1.0 / (1.0 + tan_beta * tan_beta);
     EXPECT_NEAR(stroke_angle(k), std::atan(tan_beta), 1e-4);
     EXPECT_NEAR(k.stroke_slope, 5.0 / 6.0 * std::cos(theta) * cos2, 2e-4);
-    EXPECT_NEAR(k.crank_lever, c.crank_radius * std::cos(theta), 2e-4 * c.crank_radius);
+    EXPECT_NEAR(k.crank_jacobian, c.crank_radius * std::cos(theta), 2e-4 * c.crank_radius);
   }
 }
 

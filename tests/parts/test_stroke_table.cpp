@@ -48,7 +48,8 @@ TEST(StrokeTable, ConvergesToTheLawThatItSamples) {
       const CrankKinematics<double> k = at(t, theta);
       off[0] = std::max(off[0], std::abs(stroke_angle(k) - law(theta)));
       off[1] = std::max(off[1], std::abs(k.stroke_slope - 0.7 * std::cos(theta) + 0.2 * std::sin(2.0 * theta)));
-      off[2] = std::max(off[2], std::abs(k.stroke_curve + 0.7 * std::sin(theta) + 0.4 * std::cos(2.0 * theta)));
+      off[2] =
+          std::max(off[2], std::abs(k.stroke_second_derivative + 0.7 * std::sin(theta) + 0.4 * std::cos(2.0 * theta)));
     }
     const double order[3] = {6.0, 5.0, 4.0};
     for (int n = 0; n < 3; ++n) {
@@ -68,7 +69,7 @@ TEST(StrokeTable, HasFourContinuousDerivativesAtEveryRow) {
     EXPECT_NEAR(stroke_angle(at(t, theta)), 1.5 * beta, 1e-14);
     // Differences to either side tell derivatives three and four; a jump would not fall with the step.
     const double h = 1e-3;
-    const auto curve = [&t, here = theta](double by) { return at(t, here + by).stroke_curve; };
+    const auto curve = [&t, here = theta](double by) { return at(t, here + by).stroke_second_derivative; };
     EXPECT_NEAR(curve(-1e-12), curve(1e-12), 1e-10);
     const double left = (curve(0.0) - curve(-h)) / h, right = (curve(h) - curve(0.0)) / h;
     EXPECT_NEAR(left, right, 5.0 * h);
@@ -82,8 +83,8 @@ TEST(StrokeTable, FrictionActsAtTheReferenceRadiusAndPowerIsConserved) {
   const StrokeTable<double> t = table_of(sampled(36));
   for (double theta = 0.0; theta < two_pi; theta += 0.1) {
     const CrankKinematics<double> k = at(t, theta);
-    EXPECT_EQ(k.wing_lever, 8e-3);
-    EXPECT_DOUBLE_EQ(k.crank_lever, 8e-3 * k.stroke_slope);
+    EXPECT_EQ(k.wing_jacobian, 8e-3);
+    EXPECT_DOUBLE_EQ(k.crank_jacobian, 8e-3 * k.stroke_slope);
   }
 }
 
@@ -121,8 +122,9 @@ TEST(StrokeTable, DualNumbersAgreeWithDifferences) {
     const auto k = crank_kinematics(dual, J(sin(angle)), J(cos(angle)));
     const CrankKinematics<double> now = at(t, theta), before = at(t, theta - 1e-5), after = at(t, theta + 1e-5);
     EXPECT_NEAR(stroke_angle(k).v[0], now.stroke_slope, 1e-13);
-    EXPECT_NEAR(k.stroke_slope.v[0], now.stroke_curve, 1e-13);
-    EXPECT_NEAR(k.stroke_curve.v[0], (after.stroke_curve - before.stroke_curve) / 2e-5, 1e-6);
+    EXPECT_NEAR(k.stroke_slope.v[0], now.stroke_second_derivative, 1e-13);
+    EXPECT_NEAR(k.stroke_second_derivative.v[0],
+                (after.stroke_second_derivative - before.stroke_second_derivative) / 2e-5, 1e-6);
     EXPECT_NEAR(stroke_angle(k).v[1], stroke_angle(now) / 1.2, 1e-13);
   }
 }

@@ -124,7 +124,7 @@ class Fronts(unittest.TestCase):
             "parameter": PARAMETERS,
         }
         calls = []
-        front = wb.optimise(study, vehicle=springs(), progress=lambda *told: calls.append(told))
+        front = wb.optimise(study, vehicle=springs(), progress=lambda *reported: calls.append(reported))
         designs = front.designs
         self.assertGreater(designs.sizes["design"], 20)
         self.assertTrue(np.all(np.diff(designs.lift_mean) < 0))

@@ -67,12 +67,12 @@ class Solve(unittest.TestCase):
             vehicle = wb.read(file)
             flight = ["--endurance"] if vehicle["supply.type"].startswith("battery") else []
             found = subprocess.run([PROGRAM, "run", file, "--json", *flight], capture_output=True, text=True)
-            told = json.loads(found.stdout)
+            printed = json.loads(found.stdout)
             result = vehicle.solve(endurance=True)
-            self.assertEqual(result.status, told["status"], file)
-            self.assertEqual(result.evidence, told["status_detail"], file)
+            self.assertEqual(result.status, printed["status"], file)
+            self.assertEqual(result.evidence, printed["status_detail"], file)
             for name, value in result.metrics.items():
-                self.assertEqual(value, told[wb.metrics[name].key], (file, name))
+                self.assertEqual(value, printed[wb.metrics[name].key], (file, name))
 
     def test_not_flapping_is_a_result(self):
         vehicle = reference().replace({"motor.friction_torque": "1 N m"})

@@ -12,7 +12,7 @@ import wingbeat as wb
 from shared import DATA, PROGRAM, reference
 
 
-def told(*arguments):
+def printed(*arguments):
     found = subprocess.run([PROGRAM, *arguments, "--json"], capture_output=True, text=True)
     return json.loads(found.stdout)
 
@@ -22,7 +22,7 @@ class Studies(unittest.TestCase):
     def test_an_endurance_is_the_programs(self):
         file = DATA / "designs" / "friction2022-battery.toml"
         flight = wb.read(file).endurance()
-        self.assertEqual(dict(flight), told("endurance", file))
+        self.assertEqual(dict(flight), printed("endurance", file))
         trajectory = flight.trajectory
         self.assertEqual(float(trajectory.time[-1]), flight["endurance_s"])
         self.assertEqual(float(trajectory.charge[-1]), flight["charge_final"])
@@ -34,7 +34,7 @@ class Studies(unittest.TestCase):
     @unittest.skipUnless(PROGRAM, "needs the program")
     def test_control_models_are_the_programs(self):
         models = reference().linearise(maps=False)
-        self.assertEqual(dict(models), told("linearise", "friction2022", "--no-maps"))
+        self.assertEqual(dict(models), printed("linearise", "friction2022", "--no-maps"))
         model = models.discrete
         system = model.to_scipy()
         self.assertEqual(system.dt, models["model"]["period_s"])
@@ -55,7 +55,7 @@ class Studies(unittest.TestCase):
             sized = "rotor_diameter" in file.read_text()
             found = wb.identify_motor(file, frequency="22 Hz", assume_steel_cylinder=sized, assume_typical_damping=True)
             fallbacks = ["--fallback", "inertia=solid-steel-cylinder"] * sized + ["--fallback", "viscous_damping=typical"]
-            self.assertEqual(dict(found), told("identify-motor", file, "--frequency", "22 Hz", *fallbacks), file)
+            self.assertEqual(dict(found), printed("identify-motor", file, "--frequency", "22 Hz", *fallbacks), file)
             if found.motor is not None:
                 text = reference().to_toml()
                 start, end = text.index("[motor]"), text.index("[", text.index("[motor]") + 1)
@@ -65,7 +65,7 @@ class Studies(unittest.TestCase):
     def test_a_fit_is_the_programs(self):
         file = DATA / "bench" / "flapper.toml"
         found = wb.fit(file, profiles=False)
-        self.assertEqual(dict(found), told("fit", file, "--no-profiles"))
+        self.assertEqual(dict(found), printed("fit", file, "--no-profiles"))
         self.assertEqual(dict(found), dict(wb.fit(file, profiles=False, threads=1)))
         self.assertEqual(found.vehicle is None, "misfit" in found.get("status", ""))
 
@@ -74,7 +74,7 @@ class Studies(unittest.TestCase):
         file = DATA / "studies" / "tolerance-hover.toml"
         calls = []
         found = wb.tolerance(file, progress=lambda done, of: calls.append((done, of)))
-        self.assertEqual(dict(found), told("tolerance", file))
+        self.assertEqual(dict(found), printed("tolerance", file))
 
     def test_a_study_from_a_dict(self):
         study = {

@@ -33,13 +33,13 @@ std::string said(const SearchFinding& f) {
 }
 
 TEST(DescribeSearch, Frequency) {
-  const auto of = [](Finding kind, SearchRange range = SearchRange::domain) {
+  const auto position = [](Finding kind, SearchRange range = SearchRange::domain) {
     return finding(kind, Sought::frequency, range);
   };
-  SearchFinding f = of(Finding::reached);
+  SearchFinding f = position(Finding::reached);
   f.evidence = {.kind = StatusEvidence::Kind::orbit, .frequency = 60.0};
   EXPECT_EQ(said(f), "steady flapping at 60 Hz");
-  f = of(Finding::never_flaps);
+  f = position(Finding::never_flaps);
   f.last_voltage = 12.5;
   f.status = FlappingStatus::stalled;
   f.evidence = stalls;
@@ -47,7 +47,7 @@ TEST(DescribeSearch, Frequency) {
       said(f),
       "it flaps at no voltage up to 12.5 V; there it is stalled: the motor never starts: its stall torque 0.001 N "
       "m does not exceed the constant friction 0.002 N m");
-  f = of(Finding::out_of_range);
+  f = position(Finding::out_of_range);
   f.at = Place{9.0, 55.0};
   f.limits = {falls};
   EXPECT_EQ(said(f),
@@ -58,11 +58,11 @@ TEST(DescribeSearch, Frequency) {
             "60 Hz cannot be reached inside the domain of validity: at 9 V, where it flaps at 55 Hz, the angle of "
             "attack falls to -5 deg (the coefficients hold from 0 to 90 deg); inside it flaps at 50 Hz at most, at 8 "
             "V");
-  f = of(Finding::out_of_range, SearchRange::extrapolation);
+  f = position(Finding::out_of_range, SearchRange::extrapolation);
   f.at = Place{9.0, 55.0};
   EXPECT_EQ(said(f),
             "60 Hz cannot be reached: at 9 V, where it flaps at 55 Hz, the angle of attack falls below -360 deg");
-  f = of(Finding::beyond_any_voltage);
+  f = position(Finding::beyond_any_voltage);
   f.stroke_amplitude = 50.0 / degrees_per_radian;
   f.highest_frequency = 41.0;
   EXPECT_EQ(said(f),
@@ -72,32 +72,33 @@ TEST(DescribeSearch, Frequency) {
   EXPECT_EQ(said(f),
             "60 Hz cannot be reached in the range that is searched: at a stroke amplitude of 50 deg, whatever the "
             "voltage, wings that flap at more than 41 Hz pass an angle of attack of -360 deg or Mach 3");
-  f = of(Finding::jumps);
+  f = position(Finding::jumps);
   f.at = Place{9.0, 61.0};
   f.least = Place{9.0, 40.0};
   EXPECT_EQ(said(f), "at 9 V the flapping frequency jumps from 40 Hz to 61 Hz: 60 Hz in between cannot be held");
-  f = of(Finding::too_low_at_first);
+  f = position(Finding::too_low_at_first);
   f.at = Place{0.5, 61.0};
   EXPECT_EQ(said(f), "60 Hz cannot be reached: at 0.5 V, the lowest voltage tried, it flaps at 61 Hz already");
-  f = of(Finding::too_low_at_onset);
+  f = position(Finding::too_low_at_onset);
   f.at = Place{0.5, 61.0};
   f.evidence = stalls;
   EXPECT_EQ(said(f),
             "60 Hz cannot be reached: from rest it flaps only above 0.5 V, and there at 61 Hz already; below, it is "
             "stalled (the motor never starts: its stall torque 0.001 N m does not exceed the constant friction 0.002 N "
             "m)");
-  f = of(Finding::too_high);
+  f = position(Finding::too_high);
   f.last_voltage = 20.0;
   f.most = Place{12.0, 58.0};
   EXPECT_EQ(said(f), "60 Hz cannot be reached: up to 20 V it flaps at 58 Hz at most, at 12 V");
 }
 
 TEST(DescribeSearch, Lift) {
-  const auto of = [](Finding kind, SearchRange range = SearchRange::domain) {
+  const auto position = [](Finding kind, SearchRange range = SearchRange::domain) {
     return finding(kind, Sought::lift, range);
   };
-  EXPECT_EQ(said(of(Finding::no_wings_in_air)), "0.05 N cannot be reached: without wings in air there is no lift");
-  SearchFinding f = of(Finding::out_of_range);
+  EXPECT_EQ(said(position(Finding::no_wings_in_air)),
+            "0.05 N cannot be reached: without wings in air there is no lift");
+  SearchFinding f = position(Finding::out_of_range);
   f.at = Place{9.0, 0.04};
   f.limits = {falls};
   EXPECT_EQ(said(f),
@@ -109,21 +110,21 @@ TEST(DescribeSearch, Lift) {
             "0.05 N cannot be reached inside the domain of validity: at 9 V, where it lifts so much, the angle of "
             "attack falls to -5 deg (the coefficients hold from 0 to 90 deg); inside it lifts from 0.01 N, at 1 V, to "
             "0.045 N, at 8 V");
-  f = of(Finding::jumps);
+  f = position(Finding::jumps);
   f.at = Place{9.0, 0.06};
   f.least = Place{9.0, 0.04};
   EXPECT_EQ(said(f), "at 9 V the mean lift jumps from 0.04 N to 0.06 N: 0.05 N in between cannot be held");
-  f = of(Finding::too_low_at_first, SearchRange::extrapolation);
+  f = position(Finding::too_low_at_first, SearchRange::extrapolation);
   f.at = Place{0.5, 0.06};
   EXPECT_EQ(said(f), "0.05 N cannot be reached: at 0.5 V, the lowest voltage tried, it lifts 0.06 N already");
-  f = of(Finding::too_low_at_onset);
+  f = position(Finding::too_low_at_onset);
   f.at = Place{0.5, 0.06};
   f.evidence = stalls;
   EXPECT_EQ(said(f),
             "0.05 N cannot be reached inside the domain of validity: from rest it flaps only above 0.5 V, and there "
             "lifts 0.06 N already; below, it is stalled (the motor never starts: its stall torque 0.001 N m does not "
             "exceed the constant friction 0.002 N m)");
-  f = of(Finding::too_high);
+  f = position(Finding::too_high);
   f.most = Place{12.0, 0.045};
   f.last_voltage = 20.0;
   EXPECT_EQ(said(f),

@@ -41,13 +41,13 @@ TEST(Reference, IsTheParameterTable) {
 TEST(Reference, DefinesEveryMetric) {
   const std::string text = page_with("metrics.md", metric_reference());
   // In the order of the table, each once.
-  auto at = text.find("| key |");
+  auto position = text.find("| key |");
   for (const MetricInfo& metric : metric_table()) {
     const std::string row = "\n| `" + std::string(metric.key) + "` |";
-    const auto found = text.find(row, at);
+    const auto found = text.find(row, position);
     ASSERT_NE(found, std::string::npos) << metric.key;
     EXPECT_EQ(text.find(row, found + 1), std::string::npos) << metric.key;
-    at = found;
+    position = found;
   }
 }
 

@@ -42,7 +42,7 @@ TEST(Reproduction, EnergyFlowsClose) {
     // A constant friction of the motor aside, which this one lacks, it is the motor output of eq (16).
     EXPECT_NEAR(f.motor_output, c.run.metrics[Metric::power_motor], 1e-7 * f.supply);
     const double residual = f.transmission[1].power;
-    if (c.of.formulation == Formulation::virtual_work) EXPECT_NEAR(residual, 0.0, 1e-9 * f.supply);
+    if (c.flapping_case.formulation == Formulation::virtual_work) EXPECT_NEAR(residual, 0.0, 1e-9 * f.supply);
     else EXPECT_GT(residual, 0.02 * f.supply);
   }
 }
@@ -68,7 +68,7 @@ TEST(Reproduction, ScansAgreeWithSingleRuns) {
   const Reproduction& r = computed();
   for (const CycleCase& cycle : r.at_frequency) {
     for (const TrendCurve& curve : r.frequency.curves) {
-      if (!(curve.of == cycle.of)) continue;
+      if (!(curve.flapping_case == cycle.flapping_case)) continue;
       for (std::size_t n = 0; n < r.frequency.axis.size(); ++n) {
         if (r.frequency.axis[n] != r.options.frequency) continue;
         for (const Metric m : {Metric::power_electrical, Metric::lift_mean, Metric::rod_force_peak}) {

@@ -174,7 +174,7 @@ TEST(DomainOfOptima, SlopesOfTheLimitsAreThoseOfDifferences) {
   const std::vector<DesignParameter> parameters = {design_parameter("supply.voltage"),
                                                    design_parameter("transmission.crank_radius")};
   const DesignPointOptions options{Condition::air, std::nullopt, 1e-10, true};
-  const DesignPoint at = design_point(design, options, parameters, start_up_in_time());
+  const DesignPoint point = design_point(design, options, parameters, start_up_in_time());
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const double x = *parameters[k].value(design), h = 1e-4 * x;
     Design<double> up = design, down = design;
@@ -187,7 +187,7 @@ TEST(DomainOfOptima, SlopesOfTheLimitsAreThoseOfDifferences) {
           DomainLimit::motor_efficiency, DomainLimit::flow_speed}) {
       const std::size_t l = std::size_t(limit);
       const double difference = (above.domain_excess[l] - below.domain_excess[l]) / (2.0 * h);
-      EXPECT_NEAR(at.domain_slopes[k][l], difference, 1e-4 * std::abs(difference)) << k << " " << l;
+      EXPECT_NEAR(point.domain_slopes[k][l], difference, 1e-4 * std::abs(difference)) << k << " " << l;
     }
   }
 }

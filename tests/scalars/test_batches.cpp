@@ -44,12 +44,12 @@ class Batches : public testing::TestWithParam<InstructionSet> {
 
 /// Numbers of one case by plain doubles.
 std::array<double, outputs> scalar_outputs(const Case& c) {
-  const auto at = instant<double>(
+  const auto numbers_at = instant<double>(
       c.vehicle, {std::sin(c.theta), std::cos(c.theta), c.omega, c.current, c.voltage, c.force, c.force});
   const auto step = crank_step<double>(c.vehicle, c.theta, {120.0 + std::abs(c.omega), c.current}, 0.1,
                                        {c.force, 1.0, 1.0, 1.0, 1.0});
   std::array<double, outputs> out;
-  std::copy(at.begin(), at.end(), out.begin());
+  std::copy(numbers_at.begin(), numbers_at.end(), out.begin());
   std::copy(step.begin(), step.end(), out.begin() + instant_size);
   return out;
 }
@@ -98,7 +98,7 @@ Vehicle<double> mixed_vehicle(std::mt19937_64& random, Formulation formulation, 
     for (double theta = 0.0; theta < two_pi; theta += 0.05) {
       const auto k = crank_kinematics(v.transmission, std::sin(theta), std::cos(theta));
       for (const double s : {1.0, -1.0}) least = std::min(least, effective_inertia(v, k, s) / v.motor.inertia);
-      if (k.wing_lever < 0.3 * v.transmission.slider_crank.hinge_offset) least = 0.0;
+      if (k.wing_jacobian < 0.3 * v.transmission.slider_crank.hinge_offset) least = 0.0;
     }
     if (least > 0.5) return v;
   }
@@ -123,11 +123,11 @@ std::vector<Case> mixed_cases(Formulation formulation, Inductance inductance, in
       case 4: c.theta = 1.5 * pi; break;
       case 5: {
         // Rod force zero: the force switch is linear in the current.
-        Case at = c;
-        at.current = 0.0;
-        const double s0 = scalar_outputs(at)[9];
-        at.current = 1.0;
-        const double s1 = scalar_outputs(at)[9];
+        Case still = c;
+        still.current = 0.0;
+        const double s0 = scalar_outputs(still)[9];
+        still.current = 1.0;
+        const double s1 = scalar_outputs(still)[9];
         if (std::abs(s1 - s0) > 0.1 * std::abs(s0)) c.current = -s0 / (s1 - s0);
         break;
       }

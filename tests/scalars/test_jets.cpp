@@ -68,24 +68,24 @@ struct Inputs {
 /// Checks the dual numbers of f, a function of Inputs of any scalar, against differences in every variable.
 /// `residual` and `motor_work` say where those stand among its outputs.
 template <class F>
-void expect_derivatives(const F& f, const Inputs<double>& at, double tolerance, std::size_t residual,
+void expect_derivatives(const F& f, const Inputs<double>& inputs, double tolerance, std::size_t residual,
                         std::size_t motor_work) {
   using J = Jet<variable_count>;
-  Inputs<J> dual{cast<J>(at.vehicle), J(at.theta), J(at.omega), J(at.current)};
+  Inputs<J> dual{cast<J>(inputs.vehicle), J(inputs.theta), J(inputs.omega), J(inputs.current)};
   for (int n = 0; n < variable_count; ++n) dual.variable(n).v[n] = 1.0;
   const auto jets = f(dual);
-  const auto values = f(at);
+  const auto values = f(inputs);
   for (std::size_t out = 0; out < values.size(); ++out) {
     if (std::isnan(values[out])) continue;  // a metric that no cycle has
     const double beside = out == residual ? values[motor_work] : 0.0;
     EXPECT_NEAR(jets[out].a, values[out], 1e-13 * (std::abs(values[out]) + std::abs(beside))) << "output " << out;
   }
   for (int n = 0; n < variable_count; ++n) {
-    const double value = Inputs<double>(at).variable(n);
+    const double value = Inputs<double>(inputs).variable(n);
     ASSERT_NE(value, 0.0) << "variable " << n << " is not generic";
     const double h = 2e-4 * std::abs(value);
     const auto moved = [&](double by) {
-      Inputs<double> there = at;
+      Inputs<double> there = inputs;
       there.variable(n) += by;
       return f(there);
     };
@@ -120,8 +120,9 @@ struct InstantOf {
 TEST(Jets, InstantAgreesWithDifferencesInEveryParameter) {
   for (const Formulation formulation : {Formulation::rod_force, Formulation::virtual_work}) {
     for (const double theta : {0.3, 1.1, 2.6, 4.0, 5.9}) {
-      const Inputs<double> at{generic_vehicle(formulation), theta, 140.0, 0.13};
-      for (const double force : {1.0, -1.0}) expect_derivatives(InstantOf{force}, at, 1e-8, residual_at, motor_work_at);
+      const Inputs<double> inputs{generic_vehicle(formulation), theta, 140.0, 0.13};
+      for (const double force : {1.0, -1.0})
+        expect_derivatives(InstantOf{force}, inputs, 1e-8, residual_at, motor_work_at);
     }
   }
 }
@@ -131,23 +132,24 @@ TEST(Jets, OtherTransmissionsAgreeWithDifferences) {
   for (int n = 0; n < 40; ++n) rows.emplace_back(0.05 + 0.157 * n, 0.6 * std::sin(0.157 * n));
   for (const TransmissionType type : {TransmissionType::four_bar, TransmissionType::tabulated}) {
     for (const double theta : {0.3, 2.6, 4.0}) {
-      Inputs<double> at{generic_vehicle(Formulation::virtual_work), theta, 140.0, 0.13};
-      at.vehicle.transmission.type = type;
-      at.vehicle.transmission.tabulated.curve = std::make_shared<const StrokeCurve>(rows);
-      for (const double force : {1.0, -1.0}) expect_derivatives(InstantOf{force}, at, 1e-7, residual_at, motor_work_at);
+      Inputs<double> inputs{generic_vehicle(Formulation::virtual_work), theta, 140.0, 0.13};
+      inputs.vehicle.transmission.type = type;
+      inputs.vehicle.transmission.tabulated.curve = std::make_shared<const StrokeCurve>(rows);
+      for (const double force : {1.0, -1.0})
+        expect_derivatives(InstantOf{force}, inputs, 1e-7, residual_at, motor_work_at);
     }
   }
 }
 
 TEST(Jets, BackwardRotationAgreesWithDifferences) {
-  const Inputs<double> at{generic_vehicle(Formulation::rod_force), 0.8, -90.0, -0.2};
-  for (const double force : {1.0, -1.0}) expect_derivatives(InstantOf{force}, at, 1e-8, residual_at, motor_work_at);
+  const Inputs<double> inputs{generic_vehicle(Formulation::rod_force), 0.8, -90.0, -0.2};
+  for (const double force : {1.0, -1.0}) expect_derivatives(InstantOf{force}, inputs, 1e-8, residual_at, motor_work_at);
 }
 
 TEST(Jets, TabulatedCoefficientsAgreeWithDifferences) {
-  Inputs<double> at{generic_vehicle(Formulation::rod_force), 0.3, 140.0, 0.13};
-  at.vehicle.wings.coefficients.table = generic_table();
-  expect_derivatives(InstantOf{1.0}, at, 1e-7, residual_at, motor_work_at);
+  Inputs<double> inputs{generic_vehicle(Formulation::rod_force), 0.3, 140.0, 0.13};
+  inputs.vehicle.wings.coefficients.table = generic_table();
+  expect_derivatives(InstantOf{1.0}, inputs, 1e-7, residual_at, motor_work_at);
 }
 
 /// The vehicle without derivatives.
@@ -236,9 +238,9 @@ void expect_finite(const Outputs& jets) {
   }
 }
 
-Inputs<Jet<variable_count>> dual_inputs(const Inputs<double>& at) {
+Inputs<Jet<variable_count>> dual_inputs(const Inputs<double>& inputs) {
   using J = Jet<variable_count>;
-  Inputs<J> dual{cast<J>(at.vehicle), J(at.theta), J(at.omega), J(at.current)};
+  Inputs<J> dual{cast<J>(inputs.vehicle), J(inputs.theta), J(inputs.omega), J(inputs.current)};
   for (int n = 0; n < variable_count; ++n) dual.variable(n).v[n] = 1.0;
   return dual;
 }
@@ -254,18 +256,18 @@ TEST(Jets, DerivativesAreFiniteAndContinuousAtTheDeadCentres) {
       cos_theta.v[parameter_count] = -sine;
       for (const double force : {1.0, -1.0}) {
         const J v_t = terminal_voltage(dual.vehicle, dual.vehicle.voltage, dual.current);
-        const auto at =
+        const auto numbers_at =
             instant<J>(dual.vehicle, {sin_theta, cos_theta, dual.omega, dual.current, v_t, J(force), J(1.0)});
-        expect_finite(at);
+        expect_finite(numbers_at);
         for (const double aside : {-1e-9, 1e-9}) {
           const auto near = InstantOf{force}(dual_inputs({v, std::asin(sine) + aside, 140.0, 0.13}));
           // Integrals with an absolute value have a kink here: all but those and the extremes must agree.
           for (std::size_t out = 0; out < motion_size; ++out) {
             for (int n = 0; n < variable_count; ++n) {
-              const double size = std::abs(at[out].v[n]) + std::abs(at[out].a / dual.variable(n).a) +
-                                  std::abs(at[out].v[parameter_count]);
+              const double size = std::abs(numbers_at[out].v[n]) + std::abs(numbers_at[out].a / dual.variable(n).a) +
+                                  std::abs(numbers_at[out].v[parameter_count]);
               if (n == parameter_count) continue;
-              EXPECT_NEAR(near[out].v[n], at[out].v[n], 1e-5 * size + 1e-12) << "output " << out << " by " << n;
+              EXPECT_NEAR(near[out].v[n], numbers_at[out].v[n], 1e-5 * size + 1e-12) << "output " << out << " by " << n;
             }
           }
         }
@@ -290,14 +292,14 @@ TEST(Jets, DerivativesAreFiniteAtRestAndWithoutForce) {
 }
 
 TEST(Jets, AccelerationIsContinuousAcrossZeroForce) {
-  Inputs<double> at{generic_vehicle(Formulation::rod_force), 2.3, 140.0, 0.0};
+  Inputs<double> inputs{generic_vehicle(Formulation::rod_force), 2.3, 140.0, 0.0};
   const auto switch_at = [&](double current) {
-    at.current = current;
-    return InstantOf{1.0}(at)[9];
+    inputs.current = current;
+    return InstantOf{1.0}(inputs)[9];
   };
   const double s0 = switch_at(0.0), s1 = switch_at(1.0);
-  at.current = -s0 / (s1 - s0);
-  const auto up = InstantOf{1.0}(dual_inputs(at)), down = InstantOf{-1.0}(dual_inputs(at));
+  inputs.current = -s0 / (s1 - s0);
+  const auto up = InstantOf{1.0}(dual_inputs(inputs)), down = InstantOf{-1.0}(dual_inputs(inputs));
   expect_finite(up);
   expect_finite(down);
   EXPECT_NEAR(up[6].a, down[6].a, 1e-10 * std::abs(up[6].a));
@@ -306,17 +308,17 @@ TEST(Jets, AccelerationIsContinuousAcrossZeroForce) {
 }
 
 TEST(Jets, StiffnessZeroStillHasItsDerivative) {
-  Inputs<double> at{generic_vehicle(Formulation::virtual_work), 0.9, 140.0, 0.13};
-  at.vehicle.spring.stiffness = 0.0;
-  const auto numbers = parameters(at.vehicle);
-  const auto stiffness = std::find(numbers.begin(), numbers.end(), &at.vehicle.spring.stiffness) - numbers.begin();
-  const double derivative = InstantOf{1.0}(dual_inputs(at))[6].v[stiffness];
+  Inputs<double> inputs{generic_vehicle(Formulation::virtual_work), 0.9, 140.0, 0.13};
+  inputs.vehicle.spring.stiffness = 0.0;
+  const auto numbers = parameters(inputs.vehicle);
+  const auto stiffness = std::find(numbers.begin(), numbers.end(), &inputs.vehicle.spring.stiffness) - numbers.begin();
+  const double derivative = InstantOf{1.0}(dual_inputs(inputs))[6].v[stiffness];
   const double h = 1e-4;
-  Inputs<double> more = at, less = at;
+  Inputs<double> more = inputs, less = inputs;
   more.vehicle.spring.stiffness = h;
   less.vehicle.spring.stiffness = -h;
   // Negative stiffness is no vehicle, but the same formula: F and omega' are linear in it.
-  const double one_sided = (InstantOf{1.0}(more)[6] - InstantOf{1.0}(at)[6]) / h;
+  const double one_sided = (InstantOf{1.0}(more)[6] - InstantOf{1.0}(inputs)[6]) / h;
   EXPECT_NEAR(derivative, one_sided, 1e-8 * std::abs(derivative));
   EXPECT_NE(derivative, 0.0);
 }
@@ -372,18 +374,18 @@ std::array<S, 8> resolved(const std::array<S, 8>& x) {
 
 TEST(Jets, ResolvedDesignAgreesWithDifferences) {
   using J = Jet<8>;
-  const std::array<double, 8> at = {4.0, 0.6, 20.0, 0.7, 22.0, 63e-3, 25e-3, 4e-3};
+  const std::array<double, 8> values = {4.0, 0.6, 20.0, 0.7, 22.0, 63e-3, 25e-3, 4e-3};
   std::array<J, 8> dual;
-  for (int n = 0; n < 8; ++n) dual[std::size_t(n)] = J(at[std::size_t(n)], n);
+  for (int n = 0; n < 8; ++n) dual[std::size_t(n)] = J(values[std::size_t(n)], n);
   const auto jets = resolved(dual);
   for (std::size_t n = 0; n < 8; ++n) {
-    std::array<double, 8> more = at, less = at;
-    const double h = 1e-5 * at[n];
+    std::array<double, 8> more = values, less = values;
+    const double h = 1e-5 * values[n];
     more[n] += h;
     less[n] -= h;
-    const auto high = resolved(more), low = resolved(less), mid = resolved(at);
+    const auto high = resolved(more), low = resolved(less), mid = resolved(values);
     for (std::size_t out = 0; out < 8; ++out) {
-      EXPECT_NEAR(jets[out].v[int(n)], (high[out] - low[out]) / (2.0 * h), 1e-8 * std::abs(mid[out] / at[n]))
+      EXPECT_NEAR(jets[out].v[int(n)], (high[out] - low[out]) / (2.0 * h), 1e-8 * std::abs(mid[out] / values[n]))
           << "output " << out << " by " << n;
     }
   }

@@ -185,7 +185,7 @@ struct DoubleCrossing : TestSystem<S, 1> {
   using Base = TestSystem<S, 1>;
   double centre, half_width;
 
-  DoubleCrossing(double at, double half) : centre(at), half_width(half) {}
+  DoubleCrossing(double advance, double half) : centre(advance), half_width(half) {}
   template <class T>
   DoubleCrossing<T> cast() const {
     return DoubleCrossing<T>(centre, half_width);

@@ -43,11 +43,11 @@ TEST_P(Collocation, PolynomialsOfItsDegreeAreIntegratedDifferentiatedAndTakenApa
     for (int m = 0; m <= n; ++m) {
       double between = 0.0, slope = 0.0, value = 0.0;
       for (int j = 0; j <= n; ++j) {
-        const double at = std::pow(rule.node[j], power);
-        between += rule.between[m][j] * at;
-        slope += rule.slope[m][j] * at;
+        const double value_at_node = std::pow(rule.node[j], power);
+        between += rule.between[m][j] * value_at_node;
+        slope += rule.slope[m][j] * value_at_node;
         for (int k = 0; k <= n; ++k)
-          value += rule.legendre[k][j] * at * std::legendre(unsigned(k), 2.0 * rule.node[m] - 1.0);
+          value += rule.legendre[k][j] * value_at_node * std::legendre(unsigned(k), 2.0 * rule.node[m] - 1.0);
       }
       const auto integral = [&](double x) { return std::pow(x, power + 1) / (power + 1); };
       EXPECT_NEAR(between, m == 0 ? 0.0 : integral(rule.node[m]) - integral(rule.node[m - 1]), 1e-14);

@@ -38,9 +38,9 @@ TEST(Linear, RandomSystemsAreSolvedAndInverted) {
     std::vector<double> matrix(std::size_t(n * n)), x(std::size_t(n), 0.0), b(std::size_t(n), 0.0);
     for (double& value : matrix) value = normal(random);
     for (double& value : x) value = normal(random);
-    const auto at = [&](int row, int column) { return matrix[std::size_t(row * n + column)]; };
+    const auto element = [&](int row, int column) { return matrix[std::size_t(row * n + column)]; };
     for (int row = 0; row < n; ++row) {
-      for (int column = 0; column < n; ++column) b[std::size_t(row)] += at(row, column) * x[std::size_t(column)];
+      for (int column = 0; column < n; ++column) b[std::size_t(row)] += element(row, column) * x[std::size_t(column)];
     }
     std::vector<double> work = matrix, inverse = matrix;
     ASSERT_TRUE(solve_linear(n, work.data(), b.data()));
@@ -49,7 +49,7 @@ TEST(Linear, RandomSystemsAreSolvedAndInverted) {
       EXPECT_NEAR(b[std::size_t(row)], x[std::size_t(row)], 1e-12);
       for (int column = 0; column < n; ++column) {
         double sum = 0.0;
-        for (int k = 0; k < n; ++k) sum += at(row, k) * inverse[std::size_t(k * n + column)];
+        for (int k = 0; k < n; ++k) sum += element(row, k) * inverse[std::size_t(k * n + column)];
         EXPECT_NEAR(sum, row == column ? 1.0 : 0.0, 1e-12);
       }
     }

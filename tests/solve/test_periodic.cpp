@@ -89,11 +89,11 @@ TEST(Periodic, SlowContractionFromFarAwayIsNotTakenForAnOrbit) {
 /// The state after many iterates by the classical Runge-Kutta method, written down here: slow, independent.
 template <class System>
 std::array<double, 2> brute_force(const System& system, std::array<double, 2> y, int iterates, int steps) {
-  const auto slope = [&](double t, const std::array<double, 2>& at) {
-    return system.template rates<false>(t, at, {at[0] >= 0.0 ? 1.0 : -1.0}).dy;
+  const auto slope = [&](double t, const std::array<double, 2>& state) {
+    return system.template rates<false>(t, state, {state[0] >= 0.0 ? 1.0 : -1.0}).dy;
   };
-  const auto moved = [](const std::array<double, 2>& at, double h, const std::array<double, 2>& k) {
-    return std::array<double, 2>{at[0] + h * k[0], at[1] + h * k[1]};
+  const auto moved = [](const std::array<double, 2>& state, double h, const std::array<double, 2>& k) {
+    return std::array<double, 2>{state[0] + h * k[0], state[1] + h * k[1]};
   };
   const double h = two_pi / steps;
   for (int iterate = 0; iterate < iterates; ++iterate) {

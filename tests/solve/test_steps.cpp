@@ -89,9 +89,9 @@ TEST(RadauTableau, MeetsItsDefiningConditions) {
 
 template <std::size_t n>
 double distance(const std::array<double, n>& a, const std::array<double, n>& b) {
-  double most = 0.0;
-  for (std::size_t k = 0; k < n; ++k) most = std::max(most, std::abs(a[k] - b[k]));
-  return most;
+  double highest = 0.0;
+  for (std::size_t k = 0; k < n; ++k) highest = std::max(highest, std::abs(a[k] - b[k]));
+  return highest;
 }
 
 struct KeplerErrors {

@@ -28,12 +28,12 @@ void compare_with_differences(const Design<double>& design, const std::vector<De
   for (std::size_t p = 0; p < parameters.size(); ++p) {
     constexpr double h = 1e-4;
     const double value = *parameters[p].value(design);
-    const auto at = [&](double steps) {
+    const auto metrics_at = [&](double steps) {
       Design<double> moved = design;
       parameters[p].set(moved, value + steps * h * value);
       return accurate_orbit(moved).metrics;
     };
-    const Metrics<double> a = at(-2.0), b = at(-1.0), c = at(1.0), d = at(2.0);
+    const Metrics<double> a = metrics_at(-2.0), b = metrics_at(-1.0), c = metrics_at(1.0), d = metrics_at(2.0);
     for (int m = 0; m < metric_count; ++m) {
       const Metric which = Metric(m);
       if (which == Metric::floquet_multiplier_max || std::isnan(orbit.metrics[which])) continue;

@@ -45,15 +45,16 @@ struct DifferenceQuotient {
 template <class LoadsAt>
 std::optional<std::array<DifferenceQuotient, wing_load_count>> difference_quotients(const LoadsAt& loads_at,
                                                                                     double step) {
-  std::array<WingLoads, 4> at;  // -2, -1, 1, 2 steps
-  for (std::size_t n = 0; n < at.size(); ++n) {
+  std::array<WingLoads, 4> shifted;  // -2, -1, 1, 2 steps
+  for (std::size_t n = 0; n < shifted.size(); ++n) {
     const std::optional<WingLoads> loads = loads_at((n < 2 ? double(n) - 2.0 : double(n) - 1.0) * step);
     if (!loads) return std::nullopt;
-    at[n] = *loads;
+    shifted[n] = *loads;
   }
   std::array<DifferenceQuotient, wing_load_count> quotients;
   for (std::size_t load = 0; load < wing_load_count; ++load) {
-    const double near = (at[2][load] - at[1][load]) / (2.0 * step), far = (at[3][load] - at[0][load]) / (4.0 * step);
+    const double near = (shifted[2][load] - shifted[1][load]) / (2.0 * step),
+                 far = (shifted[3][load] - shifted[0][load]) / (4.0 * step);
     quotients[load] = {(4.0 * near - far) / 3.0, std::abs(near - far)};
   }
   return quotients;
@@ -134,9 +135,10 @@ inline SlopeCheck slopes_against_points(const std::vector<AllocationMap>& maps) 
 }
 
 /// A slope of the lift by the voltage and the steady gain of the linear model, apart by so much of it.
-inline double lift_slope_apart(const Linearisation& at, double slope) {
-  const bool pwm = at.operating_point.design.supply.type == SupplyType::pwm;
-  const double gain = at.model->steady_gain(0, 0) / (pwm ? at.operating_point.design.supply.voltage : 1.0);
+inline double lift_slope_apart(const Linearisation& linearisation, double slope) {
+  const bool pwm = linearisation.operating_point.design.supply.type == SupplyType::pwm;
+  const double gain =
+      linearisation.model->steady_gain(0, 0) / (pwm ? linearisation.operating_point.design.supply.voltage : 1.0);
   return std::abs(slope - gain) / std::abs(gain);
 }
 

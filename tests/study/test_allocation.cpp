@@ -37,18 +37,18 @@ TEST(DriveWave, HalvesMeetAndHaveTheirLengths) {
     for (const bool cosine : {false, true}) {
       DriveWave<double> wave{bias};
       (cosine ? wave.cosine_split : wave.split) = delta;
-      const auto at = [&](double phi) { return voltage_of_wave(wave, V, phi); };
+      const auto voltage_at = [&](double phi) { return voltage_of_wave(wave, V, phi); };
       const double mean = cosine ? bias : bias - 2.0 * V * delta / pi;
       // The half from end to end, and what the wave is there.
       const double from = cosine ? 0.5 * pi : 0.0, to = from + pi * (1.0 + delta);
-      EXPECT_NEAR(at(from + tiny), mean + (cosine ? V : 0.0), 1e-7);
-      EXPECT_NEAR(at(to - tiny), mean + (cosine ? -V : 0.0), 1e-7);
-      EXPECT_NEAR(at(to + tiny), at(to - tiny), 1e-7);
-      EXPECT_NEAR(at(0.5 * (from + to)), mean + (cosine ? 0.0 : V), 1e-12);
-      EXPECT_NEAR(at(two_pi - tiny), at(0.0), 1e-7);
+      EXPECT_NEAR(voltage_at(from + tiny), mean + (cosine ? V : 0.0), 1e-7);
+      EXPECT_NEAR(voltage_at(to - tiny), mean + (cosine ? -V : 0.0), 1e-7);
+      EXPECT_NEAR(voltage_at(to + tiny), voltage_at(to - tiny), 1e-7);
+      EXPECT_NEAR(voltage_at(0.5 * (from + to)), mean + (cosine ? 0.0 : V), 1e-12);
+      EXPECT_NEAR(voltage_at(two_pi - tiny), voltage_at(0.0), 1e-7);
       double sum = 0.0;
       constexpr int count = 20000;
-      for (int n = 0; n < count; ++n) sum += at(two_pi * (n + 0.5) / count) / count;
+      for (int n = 0; n < count; ++n) sum += voltage_at(two_pi * (n + 0.5) / count) / count;
       EXPECT_NEAR(sum, bias, 1e-6);
     }
   }
@@ -141,10 +141,10 @@ TEST(Allocation, SlopesAreThoseOfCyclesBesideTheOperatingPoint) {
       int flapping = 0;
       for (std::uint32_t n = 0; n < 40 && flapping < 2; ++n) {
         const Design<double> design = map_vehicle(MapKind(kind), stops, n, 7);
-        const Linearisation at = linearise(design);
-        if (!at.model) continue;
+        const Linearisation linearisation = linearise(design);
+        if (!linearisation.model) continue;
         ++flapping;
-        const SlopeCheck check = slopes_against_cycles(at.orbit);
+        const SlopeCheck check = slopes_against_cycles(linearisation.orbit);
         EXPECT_EQ(check.beyond, 0) << map_kind_names[kind] << ' ' << n << ' ' << check.where << ' ' << check.worst;
       }
       EXPECT_EQ(flapping, 2) << map_kind_names[kind];
@@ -156,11 +156,11 @@ TEST(Allocation, SlopesWhereWingsHitStopsAreThoseOfThePoints) {
   for (const double amplitude : {12.0, 9.5}) {
     Design<double> design = with_stops();
     design.supply.voltage = amplitude;
-    const Linearisation at = linearise(design);
-    ASSERT_TRUE(at.model);
-    const std::vector<AllocationMap> maps = allocation_maps(at, 13.95e-3);
+    const Linearisation linearisation = linearise(design);
+    ASSERT_TRUE(linearisation.model);
+    const std::vector<AllocationMap> maps = allocation_maps(linearisation, 13.95e-3);
     ASSERT_EQ(maps.size(), 5u);
-    EXPECT_LT(lift_slope_apart(at, maps[0].slope.lift), 1e-8) << amplitude << " V";
+    EXPECT_LT(lift_slope_apart(linearisation, maps[0].slope.lift), 1e-8) << amplitude << " V";
     const SlopeCheck points = slopes_against_points(maps);
     EXPECT_EQ(points.beyond, 0) << amplitude << " V: " << points.where << ' ' << points.worst;
     // A difference of voltages leaves lift and pitch, a split leaves lift and roll: none of that is in their slopes.
@@ -182,9 +182,9 @@ TEST(Allocation, SlopesWhereWingsHitStopsAreThoseOfThePoints) {
 // The roll moment of a differential voltage is odd: the kinks where either side's wings begin to reach their stops
 // cancel in the curvatures of the map's points, whose error estimate missed them (6.6 times what it allowed).
 TEST(Allocation, BendsOnBothSidesOfTheOperatingPointAreFound) {
-  const Linearisation at = linearise(map_vehicle(MapKind::hinged_crank, true, 3));
-  ASSERT_TRUE(at.model);
-  const std::vector<AllocationMap> maps = allocation_maps(at, 4e-3);
+  const Linearisation linearisation = linearise(map_vehicle(MapKind::hinged_crank, true, 3));
+  ASSERT_TRUE(linearisation.model);
+  const std::vector<AllocationMap> maps = allocation_maps(linearisation, 4e-3);
   const SlopeCheck points = slopes_against_points(maps);
   EXPECT_EQ(points.compared, 8);
   EXPECT_EQ(points.beyond, 0) << points.where << ' ' << points.worst;
@@ -201,10 +201,10 @@ TEST(Allocation, MapsHoldTheMotorsTemperatures) {
   Design<double> design = reference_design();
   design.motor.thermal.resistance_winding = 20.0;
   design.motor.thermal.resistance_case = 40.0;
-  const Linearisation at = linearise(design);
-  ASSERT_TRUE(at.model);
-  const std::vector<AllocationMap> maps = allocation_maps(at);
-  EXPECT_LT(lift_slope_apart(at, maps[0].slope.lift), 1e-8);
+  const Linearisation linearisation = linearise(design);
+  ASSERT_TRUE(linearisation.model);
+  const std::vector<AllocationMap> maps = allocation_maps(linearisation);
+  EXPECT_LT(lift_slope_apart(linearisation, maps[0].slope.lift), 1e-8);
   EXPECT_EQ(slopes_against_points(maps).beyond, 0);
 }
 
@@ -213,9 +213,9 @@ TEST(Allocation, WithoutSpringsNothingHoldsTheMeanAngle) {
   design.spring = {};
   design.motors = 2.0;
   design.wing.count = 1.0;
-  const Linearisation at = linearise(design);
-  ASSERT_TRUE(at.model);
-  const std::vector<AllocationMap> maps = allocation_maps(at);
+  const Linearisation linearisation = linearise(design);
+  ASSERT_TRUE(linearisation.model);
+  const std::vector<AllocationMap> maps = allocation_maps(linearisation);
   const AllocationMap& voltage = map_by(maps, AllocationInput::voltage);
   EXPECT_GT(voltage.slope.lift, 0.0);
   EXPECT_NEAR(voltage.slope.lift, voltage.slope_of_points.lift,

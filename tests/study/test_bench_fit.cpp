@@ -253,9 +253,9 @@ TEST(BenchFit, DependsNeitherOnThreadsNorOnTheirOrder) {
     while (count > 0) act(--count);
   };
   const auto at_once = [](std::size_t count, const auto& act) { for_each_in_parallel(count, act); };
-  std::vector<std::string> told;
+  std::vector<std::string> reported;
   for (const ForEach& for_each : {ForEach(backwards), ForEach(at_once)}) {
-    const FitResult other = fit_bench(fit, [&](const std::string& what) { told.push_back(what); }, for_each);
+    const FitResult other = fit_bench(fit, [&](const std::string& what) { reported.push_back(what); }, for_each);
     EXPECT_EQ(other.deviance, alone.deviance);
     EXPECT_EQ(other.evaluations, alone.evaluations);
     EXPECT_EQ(other.starts_converged, alone.starts_converged);
@@ -269,8 +269,8 @@ TEST(BenchFit, DependsNeitherOnThreadsNorOnTheirOrder) {
       for (std::size_t n = 0; n < a.profile.size(); ++n) EXPECT_EQ(a.profile[n].excess, b.profile[n].excess) << a.key;
     }
   }
-  EXPECT_THAT(told, testing::Contains("start 2 of 3"));
-  EXPECT_THAT(told, testing::Contains("side of the profiles 6 of 6"));
+  EXPECT_THAT(reported, testing::Contains("start 2 of 3"));
+  EXPECT_THAT(reported, testing::Contains("side of the profiles 6 of 6"));
 }
 
 TEST(BenchFit, RobustLossShrugsOffOutliers) {

@@ -41,8 +41,8 @@ Loads mean_loads(const Design<double>& design, const Vehicle<double>& vehicle, c
       const Vector3d along(std::cos(beta), -side * std::sin(beta), 0.0);
       for (int k = 0; k < strips; ++k) {
         const double x = (k + 0.5) / strips, r = x * p.length + p.hub_offset, chord = chord_at(p, x);
-        const Vector3d at = Vector3d(0.0, side * hinge_offset, 0.0) + r * span;
-        const Vector3d moves = row.flapping_velocity * r * along + velocity + rate.cross(at);
+        const Vector3d arm = Vector3d(0.0, side * hinge_offset, 0.0) + r * span;
+        const Vector3d moves = row.flapping_velocity * r * along + velocity + rate.cross(arm);
         const double forward = moves.dot(along), sinks = moves.z(), s = sign_of(forward);
         const double inflow = std::atan2(sinks, std::abs(forward));
         double C_L = lift_coefficient(vehicle.wings.coefficients, alpha + inflow);
@@ -58,7 +58,7 @@ Loads mean_loads(const Design<double>& design, const Vehicle<double>& vehicle, c
         const Vector3d lifts = s * std::sin(inflow) * along - std::cos(inflow) * Vector3d::UnitZ();
         const Vector3d force = pressure * (C_D * wind + C_L * lifts);
         mean.head<3>() += force / double(rows.size() - 1);
-        mean.tail<3>() += at.cross(force) / double(rows.size() - 1);
+        mean.tail<3>() += arm.cross(force) / double(rows.size() - 1);
       }
     }
   }
@@ -107,11 +107,11 @@ TEST(BodyDerivatives, AreTheFlappingCounterTorqueInYaw) {
     mean += drag_coefficient(vehicle.wings.coefficients, alpha) * std::abs(rows[n].flapping_velocity) / 4000.0;
   }
   const double expected = -vehicle.wings.air_density * vehicle.wings.s3 * mean;
-  const BodyDerivatives of = body_derivatives(design, vehicle, orbit.record);
-  EXPECT_NEAR(of(5, 5), expected, 1e-5 * std::abs(expected));
+  const BodyDerivatives derivatives = body_derivatives(design, vehicle, orbit.record);
+  EXPECT_NEAR(derivatives(5, 5), expected, 1e-5 * std::abs(expected));
   // A planform known by S_2 and S_3 alone does not say what translation does to the forces.
-  EXPECT_TRUE(std::isnan(of(2, 2)));
-  EXPECT_TRUE(std::isfinite(of(4, 0)));
+  EXPECT_TRUE(std::isnan(derivatives(2, 2)));
+  EXPECT_TRUE(std::isfinite(derivatives(4, 0)));
 }
 
 TEST(BodyDerivatives, AreZeroInVacuum) {
@@ -133,15 +133,15 @@ TEST(Allocation, MapsOfTwoDirectDrives) {
   Design<double> design = with_outline(direct_design());
   design.wing.count = 1.0;
   design.motors = 2.0;
-  const Linearisation at = linearise(design);
-  ASSERT_TRUE(at.model);
+  const Linearisation linearisation = linearise(design);
+  ASSERT_TRUE(linearisation.model);
   constexpr double offset = 4e-3;
-  const std::vector<AllocationMap> maps = allocation_maps(at, offset);
+  const std::vector<AllocationMap> maps = allocation_maps(linearisation, offset);
   ASSERT_EQ(maps.size(), 5u);
   // Where maps meet the operating point they are it, and slopes are those of the linear model.
-  const double lift = at.orbit.metrics[Metric::lift_mean];
+  const double lift = linearisation.orbit.metrics[Metric::lift_mean];
   const AllocationMap& common = map_of(maps, AllocationInput::voltage);
-  EXPECT_NEAR(common.slope.lift, at.model->steady_gain(0, 0), 1e-4 * common.slope.lift);
+  EXPECT_NEAR(common.slope.lift, linearisation.model->steady_gain(0, 0), 1e-4 * common.slope.lift);
   for (const AllocationInput which :
        {AllocationInput::differential_voltage, AllocationInput::bias_voltage, AllocationInput::split_cycle}) {
     const AllocationMap& map = map_of(maps, which);

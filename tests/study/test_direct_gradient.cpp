@@ -19,9 +19,10 @@ void expect_gradients(const Design<double>& design, double tolerance) {
   }
   ASSERT_GT(parameters.size(), 12u);
   compare_with_differences(
-      design, parameters, [&](const auto& key, Metric m, const Metrics<double>& of, double exact, double difference) {
+      design, parameters,
+      [&](const auto& key, Metric m, const Metrics<double>& metrics, double exact, double difference) {
         if (m == Metric::current_mean || m == Metric::power_residual) return;
-        EXPECT_NEAR(exact, difference, tolerance * std::abs(of[m])) << key << ", " << metric_info(m).key;
+        EXPECT_NEAR(exact, difference, tolerance * std::abs(metrics[m])) << key << ", " << metric_info(m).key;
       });
 }
 

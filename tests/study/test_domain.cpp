@@ -145,10 +145,10 @@ TEST(Domain, StrokeOfATableTurnsWingsIntoEachOther) {
   d.transmission.table = {std::make_shared<const StrokeCurve>(rows), 1.0, 6e-3};
   d.friction = {FrictionLaw::none, 0.0};
   const auto domain_scaled = [&](double to_deg, double wings) {
-    Design<double> at = d;
-    at.wing.count = wings;
-    at.transmission.table.scale = to_deg / (degrees_per_radian * stroke_reach(transmission_of(d.transmission)));
-    return name_of(domain_of(resolve(at), ordinary_metrics()));
+    Design<double> changed = d;
+    changed.wing.count = wings;
+    changed.transmission.table.scale = to_deg / (degrees_per_radian * stroke_reach(transmission_of(d.transmission)));
+    return name_of(domain_of(resolve(changed), ordinary_metrics()));
   };
   EXPECT_EQ(domain_scaled(89.0, 2.0), "inside");
   EXPECT_EQ(domain_scaled(91.0, 2.0), "stroke");

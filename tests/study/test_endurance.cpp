@@ -134,21 +134,22 @@ TEST(Endurance, HoverIsLostWhereLiftEqualsWeight) {
   const Design<double> d = hovering_design();
   const EnduranceResult r = simulate_discharge(d);
   ASSERT_EQ(r.hover, Hover::lost);
-  const EnduranceRow& at = *r.hover_lost;
-  EXPECT_GT(at.charge, 0.05);
-  EXPECT_LT(at.charge, 0.95);
+  const EnduranceRow& lost = *r.hover_lost;
+  EXPECT_GT(lost.charge, 0.05);
+  EXPECT_LT(lost.charge, 0.95);
   Design<double> there = d;
-  there.supply.battery.charge = at.charge;
+  there.supply.battery.charge = lost.charge;
   const RunResult run = run_design(there, {.tolerance = 1e-10});
   EXPECT_NEAR(run.metrics[Metric::lift_to_weight], 1.0, 1e-9);
-  EXPECT_NEAR(run.metrics[Metric::voltage], at.metrics[Metric::voltage], 1e-9);
-  EXPECT_NEAR(run.metrics[Metric::current_mean], at.metrics[Metric::current_mean], 1e-9);
-  EXPECT_NEAR(at.metrics[Metric::voltage], at.open_circuit_voltage - 0.8 * at.metrics[Metric::current_mean], 1e-12);
+  EXPECT_NEAR(run.metrics[Metric::voltage], lost.metrics[Metric::voltage], 1e-9);
+  EXPECT_NEAR(run.metrics[Metric::current_mean], lost.metrics[Metric::current_mean], 1e-9);
+  EXPECT_NEAR(lost.metrics[Metric::voltage], lost.open_circuit_voltage - 0.8 * lost.metrics[Metric::current_mean],
+              1e-12);
   // Before it the vehicle rises, after it sinks, and the rows go on in time.
   for (std::size_t n = 1; n < r.rows.size(); ++n) {
     EXPECT_GT(r.rows[n].time, r.rows[n - 1].time);
     EXPECT_LT(r.rows[n].charge, r.rows[n - 1].charge);
-    EXPECT_EQ(r.rows[n].metrics[Metric::lift_to_weight] > 1.0 + 1e-9, r.rows[n].time < at.time) << n;
+    EXPECT_EQ(r.rows[n].metrics[Metric::lift_to_weight] > 1.0 + 1e-9, r.rows[n].time < lost.time) << n;
   }
 }
 

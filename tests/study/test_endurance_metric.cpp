@@ -27,9 +27,9 @@ void expect_derivatives(const Design<double>& d, std::initializer_list<const cha
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const DesignParameter& p = parameters[k];
     const double x = p.value(d).value(), step = 2e-4 * x;
-    const auto time = [&](double at) {
+    const auto time = [&](double stated) {
       Design<double> other = d;
-      p.set(other, at);
+      p.set(other, stated);
       const EnduranceResult flight = simulate_discharge(other, {.tolerance = of_flight});
       return of_hover ? flight.hover_time() : flight.endurance();
     };

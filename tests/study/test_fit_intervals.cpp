@@ -135,9 +135,10 @@ TEST(FitIntervals, CountedSquaresHaveTheMeanOfNormalNoise) {
   for (const Loss loss : {Loss::none, Loss::huber, Loss::soft_l1, Loss::cauchy}) {
     for (const double r : {-4.0, -0.7, 0.3, 2.5}) {
       const double step = 1e-5;
-      const LossAt at = loss_at(loss, 1.5, r), up = loss_at(loss, 1.5, r + step), down = loss_at(loss, 1.5, r - step);
-      EXPECT_NEAR(2.0 * at.psi, (up.rho - down.rho) / (2.0 * step), 1e-6) << name_of(loss);
-      EXPECT_NEAR(at.slope, (up.psi - down.psi) / (2.0 * step), 1e-6) << name_of(loss);
+      const LossAt middle = loss_at(loss, 1.5, r), up = loss_at(loss, 1.5, r + step),
+                   down = loss_at(loss, 1.5, r - step);
+      EXPECT_NEAR(2.0 * middle.psi, (up.rho - down.rho) / (2.0 * step), 1e-6) << name_of(loss);
+      EXPECT_NEAR(middle.slope, (up.psi - down.psi) / (2.0 * step), 1e-6) << name_of(loss);
     }
   }
 }

@@ -50,8 +50,8 @@ CycleInTime cycle_in_time(const Vehicle<double>& vehicle, const CycleMap& map, c
   const std::vector<double> now = flight.state();
   Eigen::VectorXd end(start.size());
   for (std::size_t n = 0; n < map.states.size(); ++n) {
-    const auto at = std::find(names.begin(), names.end(), map.states[n].name) - names.begin();
-    end[Eigen::Index(n)] = now[std::size_t(at)];
+    const auto index = std::find(names.begin(), names.end(), map.states[n].name) - names.begin();
+    end[Eigen::Index(n)] = now[std::size_t(index)];
   }
   return {end, 1.0 / flight.time()};
 }
@@ -171,9 +171,9 @@ std::vector<std::pair<double, double>> cycles_in_time(Simulation& flight, int co
 TEST(LinearModel, PredictsAStepOfVoltage) {
   // From 1 % below the voltage of the operating point to 1 % above it; within 1 % of the change, cycle by cycle.
   const Design<double> design = reference_design();
-  const Linearisation at = linearise(design, {}, 20);
-  ASSERT_TRUE(at.model);
-  const LinearModel& model = *at.model;
+  const Linearisation linearisation = linearise(design, {}, 20);
+  ASSERT_TRUE(linearisation.model);
+  const LinearModel& model = *linearisation.model;
   const Vehicle<double> vehicle = resolve(design);
   constexpr double part = 0.02;
   Vehicle<double> below = vehicle;
@@ -196,7 +196,7 @@ TEST(LinearModel, PredictsAStepOfVoltage) {
     EXPECT_NEAR(step * response(Eigen::Index(k), 0), lift, 0.01 * lift_change) << "cycle " << k;
     EXPECT_NEAR(step * response(Eigen::Index(k), frequency), faster, 0.01 * change) << "cycle " << k;
   }
-  EXPECT_GT(lift_change, 0.02 * at.orbit.metrics[Metric::lift_mean]);
+  EXPECT_GT(lift_change, 0.02 * linearisation.orbit.metrics[Metric::lift_mean]);
 }
 
 /// What a continuous model gives, held inputs and outputs sampled every T.
@@ -240,13 +240,13 @@ TEST(LinearModel, IsTheSameInContinuousTime) {
 TEST(LinearModel, LeavesWhatSettlesWithinACycleOut) {
   Design<double> design = reference_design();
   design.motor.constants.inertia = 3e-5;  // or its speed, too, would settle within a cycle
-  const Linearisation at = linearise(design);
-  ASSERT_TRUE(at.model);
-  const LinearModel& model = *at.model;
+  const Linearisation linearisation = linearise(design);
+  ASSERT_TRUE(linearisation.model);
+  const LinearModel& model = *linearisation.model;
   ASSERT_EQ(model.continuous.states.size(), 1u);
   EXPECT_EQ(model.continuous.states[0].name, "crank_speed");
   EXPECT_NEAR(-1.0 / model.continuous.a(0, 0), model.modes[0].time_constant, 1e-9 * model.modes[0].time_constant);
-  EXPECT_NEAR(std::abs(model.modes[0].multiplier), at.orbit.metrics[Metric::floquet_multiplier_max], 1e-7);
+  EXPECT_NEAR(std::abs(model.modes[0].multiplier), linearisation.orbit.metrics[Metric::floquet_multiplier_max], 1e-7);
   const Eigen::MatrixXd response = sampled(model.continuous, model.map.period, 0, 600);
   for (Eigen::Index k = 0; k < model.steady_gain.rows(); ++k) {
     const double steady = model.steady_gain(k, 0);
@@ -255,20 +255,20 @@ TEST(LinearModel, LeavesWhatSettlesWithinACycleOut) {
 }
 
 TEST(LinearModel, ALoadLeavesTheMeansOfASymmetricalDrive) {
-  const Linearisation at = linearise(direct_design());
-  ASSERT_TRUE(at.model);
-  ASSERT_EQ(at.model->map.inputs[1].name, "load_torque");
-  EXPECT_EQ(at.model->steady_gain(0, 1), 0.0);  // lift
-  EXPECT_NE(at.model->map.d(0, 1), 0.0);        // of its first cycle
-  EXPECT_GT(at.model->steady_gain(0, 0), 0.0);
+  const Linearisation linearisation = linearise(direct_design());
+  ASSERT_TRUE(linearisation.model);
+  ASSERT_EQ(linearisation.model->map.inputs[1].name, "load_torque");
+  EXPECT_EQ(linearisation.model->steady_gain(0, 1), 0.0);  // lift
+  EXPECT_NE(linearisation.model->map.d(0, 1), 0.0);        // of its first cycle
+  EXPECT_GT(linearisation.model->steady_gain(0, 0), 0.0);
 }
 
 TEST(LinearModel, IsNoneWhereNothingFlaps) {
   Design<double> design = reference_design();
   design.supply.voltage = 0.0;
-  const Linearisation at = linearise(design);
-  EXPECT_EQ(at.operating_point.status, FlappingStatus::stalled);
-  EXPECT_FALSE(at.model);
+  const Linearisation linearisation = linearise(design);
+  EXPECT_EQ(linearisation.operating_point.status, FlappingStatus::stalled);
+  EXPECT_FALSE(linearisation.model);
 }
 
 TEST(LoadTorque, EnsemblesLeaveItToTheScalarSolver) {

@@ -206,12 +206,12 @@ TEST(Motors, HaveTheDerivativesOfOne) {
   for (const bool warm : {false, true}) {
     Design<double> d = on_battery(reference_design());
     if (warm) d.motor.thermal.resistance_winding = d.motor.thermal.resistance_case = 20.0;
-    const auto gradient_of = [](const Design<double>& of) {
-      Design<GradientJet> seeded = cast<GradientJet>(of);
-      seeded.motor.constants.torque_constant = gradient_seed(of.motor.constants.torque_constant, 0);
-      seeded.wing.planform.s2 = gradient_seed(of.wing.planform.s2, 1);
+    const auto gradient_of = [](const Design<double>& varied) {
+      Design<GradientJet> seeded = cast<GradientJet>(varied);
+      seeded.motor.constants.torque_constant = gradient_seed(varied.motor.constants.torque_constant, 0);
+      seeded.wing.planform.s2 = gradient_seed(varied.wing.planform.s2, 1);
       const SteadyFlapping found =
-          find_steady_flapping(resolve(of), {.tolerance = 1e-10, .reporting = reporting_of(of)});
+          find_steady_flapping(resolve(varied), {.tolerance = 1e-10, .reporting = reporting_of(varied)});
       EXPECT_EQ(found.status, FlappingStatus::flapping);
       return orbit_gradient(found, gradient_vehicle(seeded, Condition::air));
     };

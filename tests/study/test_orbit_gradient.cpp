@@ -75,7 +75,7 @@ void compare_gradients(const Design<double>& design, Condition condition, Held h
     if (held == Held::frequency && p.key == "supply.voltage") continue;
     const double value = *p.value(design);
     const double size = value != 0.0 ? std::abs(value) : 1e-3;
-    const auto at = [&](double step) -> std::optional<Metrics<double>> {
+    const auto metrics_at = [&](double step) -> std::optional<Metrics<double>> {
       Design<double> moved = design;
       p.set(moved, value + step * size);
       if (held == Held::frequency) return metrics_at_frequency(moved, condition, f);
@@ -92,7 +92,7 @@ void compare_gradients(const Design<double>& design, Condition condition, Held h
     const double forward_weight[] = {-25.0 / 12, 48.0 / 12, -36.0 / 12, 16.0 / 12, -3.0 / 12};
     bool all = true;
     for (int s = 0; s < 5 && all; ++s) {
-      samples[s] = at(h * (one_sided ? forward[s] : central[s]));
+      samples[s] = metrics_at(h * (one_sided ? forward[s] : central[s]));
       all = samples[s].has_value();
     }
     if (!all) continue;

@@ -30,11 +30,12 @@ void expect_gradients(const Design<double>& design, double tolerance) {
     const DesignParameter p = design_parameter(key);
     if (p.value(design).value_or(0.0) != 0.0) parameters.push_back(p);
   }
-  compare_with_differences(design, parameters,
-                           [&](const auto& key, Metric m, const Metrics<double>& of, double exact, double difference) {
-                             EXPECT_NEAR(exact, difference, tolerance * (error_scale(of, m) + std::abs(difference)))
-                                 << key << ", " << metric_info(m).key;
-                           });
+  compare_with_differences(
+      design, parameters,
+      [&](const auto& key, Metric m, const Metrics<double>& metrics, double exact, double difference) {
+        EXPECT_NEAR(exact, difference, tolerance * (error_scale(metrics, m) + std::abs(difference)))
+            << key << ", " << metric_info(m).key;
+      });
 }
 
 /// Direct drives without and with inductance.

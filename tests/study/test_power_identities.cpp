@@ -8,7 +8,7 @@
 #include "vehicle/hinged_design.hpp"
 #include "vehicle/kind_boxes.hpp"
 #include "vehicle/metrics_apart.hpp"
-#include "vehicle/rungs.hpp"
+#include "vehicle/model_options.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/ensemble/ensemble_member.hpp"
@@ -59,13 +59,13 @@ int expect_identities_of(const Design<double>& design) {
 TEST(PowerIdentities, HoldOnEveryTransmissionWithEveryFurtherPart) {
   std::mt19937_64 random(32);
   int flaps = 0;
-  for (const Rung rung : {Rung::none, Rung::gear, Rung::heat, Rung::all}) {
-    SCOPED_TRACE(rung_names[std::size_t(rung)]);
+  for (const ModelOption option : {ModelOption::none, ModelOption::gear, ModelOption::heat, ModelOption::all}) {
+    SCOPED_TRACE(model_option_names[std::size_t(option)]);
     for (std::uint32_t n = 0; n < 2; ++n) {
       Design<double> crank = box_design(random), direct = smooth_direct_design(random);
       crank.motors = direct.motors = double(n + 1);
       for (Design<double>* d : {&crank, &direct}) {
-        add_rung(*d, rung, n, 32);
+        add_model_option(*d, option, n, 32);
         flaps += expect_identities_of(*d);
       }
     }
@@ -89,7 +89,7 @@ TEST(PowerIdentities, HoldWithAMotorThatHasFrictionOfItsOwn) {
   for (std::uint32_t n = 0; n < 4; ++n) {
     SCOPED_TRACE(n);
     Design<double> crank = box_design(random), direct = smooth_direct_design(random);
-    add_rung(crank, n % 2 == 0 ? Rung::all : Rung::none, n, 34);
+    add_model_option(crank, n % 2 == 0 ? ModelOption::all : ModelOption::none, n, 34);
     if (n % 2 == 1) crank.friction = direct.friction = {FrictionLaw::none, 0.0};
     for (Design<double>* d : {&crank, &direct}) {
       const MotorDesign<double>& m = d->motor;

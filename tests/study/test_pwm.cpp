@@ -105,11 +105,11 @@ TEST(Pwm, LiftOutOfReach) {
               "0.03 N of lift takes 5.492 V on the average, more than the 4 V that the supply gives at a "
               "duty of 1");
   }
-  const RunResult most = run_design(reference_design(), {.lift = 10.0});
-  EXPECT_EQ(most.search->outcome, FrequencyOutcome::too_high);
-  EXPECT_NE(describe(most).find("10 N cannot be reached inside the domain of validity: it lifts 0.06"),
+  const RunResult unreachable = run_design(reference_design(), {.lift = 10.0});
+  EXPECT_EQ(unreachable.search->outcome, FrequencyOutcome::too_high);
+  EXPECT_NE(describe(unreachable).find("10 N cannot be reached inside the domain of validity: it lifts 0.06"),
             std::string::npos)
-      << describe(most);
+      << describe(unreachable);
   // Just below the peak over the voltage, which lies between the voltages tried first, a lift can be reached.
   double peak = 0.0;
   for (double v = 9.0; v < 12.0; v += 0.05) {

@@ -92,7 +92,8 @@ TEST(ScrambledSobol, SeedsScrambleDifferentlyAndLateSamplesExist) {
   EXPECT_NE(one(0, 0), one(0, 1));
   EXPECT_EQ(one(12345, 2), ScrambledSobol(3, 1)(12345, 2));
   std::set<double> late;
-  for (std::uint64_t n = ScrambledSobol::most - 100; n < ScrambledSobol::most; ++n) late.insert(one(n, 2));
+  for (std::uint64_t n = ScrambledSobol::max_samples - 100; n < ScrambledSobol::max_samples; ++n)
+    late.insert(one(n, 2));
   EXPECT_EQ(late.size(), 100U);
   EXPECT_THROW(ScrambledSobol(0, 1), ParameterError);
   EXPECT_THROW(ScrambledSobol(101, 1), ParameterError);

@@ -164,8 +164,8 @@ TEST(DesignPoint, GradientsAgreeWithCentralDifferences) {
     options.tolerance = 1e-11;
     if (held) options.frequency = 30.0;
     const Design<double> d = flapper(5.0);
-    const DesignPoint at = design_point(d, options, parameters, {});
-    ASSERT_EQ(at.status, SweepStatus::flapping);
+    const DesignPoint point = design_point(d, options, parameters, {});
+    ASSERT_EQ(point.status, SweepStatus::flapping);
     for (std::size_t k = held ? 1 : 0; k < parameters.size(); ++k) {
       const double x = *parameters[k].value(d), step = 1e-4 * x;
       const auto moved = [&](double by) {
@@ -177,8 +177,9 @@ TEST(DesignPoint, GradientsAgreeWithCentralDifferences) {
       for (const Metric m :
            {Metric::voltage, Metric::lift_to_weight, Metric::power_electrical, Metric::rod_force_peak}) {
         const double slope = (8.0 * (up[m] - down[m]) - (far_up[m] - far_down[m])) / (12.0 * step);
-        const double scale = std::abs(at.metrics[m]) / x;
-        EXPECT_NEAR(at.gradients[k][std::size_t(m)], slope, 1e-6 * scale) << parameters[k].key << " " << int(m) << held;
+        const double scale = std::abs(point.metrics[m]) / x;
+        EXPECT_NEAR(point.gradients[k][std::size_t(m)], slope, 1e-6 * scale)
+            << parameters[k].key << " " << int(m) << held;
       }
     }
   }

@@ -71,9 +71,9 @@ TEST(LiftSearch, RefusesWhatLiesAboveThePeakAndSaysWhereItIs) {
   EXPECT_EQ(over.status, FlappingStatus::flapping);
   double peak = 0.0, where = 0.0;
   for (double v = 9.0; v < 12.0; v += 0.02) {
-    Design<double> at = d;
-    at.supply.voltage = v;
-    const double lift = run_design(at).metrics[Metric::lift_mean];
+    Design<double> changed = d;
+    changed.supply.voltage = v;
+    const double lift = run_design(changed).metrics[Metric::lift_mean];
     if (lift > peak) peak = lift, where = v;
   }
   EXPECT_NEAR(over.search->closest_value / peak, 1.0, 1e-5);
@@ -85,10 +85,10 @@ TEST(LiftSearch, RefusesWhatLiesAboveThePeakAndSaysWhereItIs) {
   EXPECT_EQ(found.kind, SearchFinding::Kind::too_high);
   EXPECT_EQ(found.sought, Sought::lift);
   EXPECT_EQ(found.target, 0.1);
-  ASSERT_TRUE(found.most);
-  EXPECT_EQ(found.most->value, over.search->closest_value);
-  EXPECT_EQ(found.most->voltage, over.search->closest_voltage);
-  EXPECT_GT(found.last_voltage, found.most->voltage);
+  ASSERT_TRUE(found.max_point);
+  EXPECT_EQ(found.max_point->value, over.search->closest_value);
+  EXPECT_EQ(found.max_point->voltage, over.search->closest_voltage);
+  EXPECT_GT(found.last_voltage, found.max_point->voltage);
   ASSERT_FALSE(found.limits.empty());
   EXPECT_EQ(found.limits[0].limit, DomainLimit::angle_of_attack);
   EXPECT_LT(found.limits[0].value, 0.0);
@@ -129,9 +129,9 @@ TEST(LiftSearch, TheOnsetIsARefusalThatSaysWhatItLifts) {
         << describe(small);
     const SearchFinding& onset = small.search->finding;
     EXPECT_EQ(onset.kind, SearchFinding::Kind::too_low_at_onset);
-    ASSERT_TRUE(onset.at);
-    EXPECT_EQ(onset.at->voltage, small.search->closest_voltage);
-    EXPECT_EQ(onset.at->value, small.search->closest_value);
+    ASSERT_TRUE(onset.point);
+    EXPECT_EQ(onset.point->voltage, small.search->closest_voltage);
+    EXPECT_EQ(onset.point->value, small.search->closest_value);
     EXPECT_EQ(onset.status, FlappingStatus::locked);
     EXPECT_EQ(onset.evidence.kind, StatusEvidence::Kind::friction_holds);
     EXPECT_GT(onset.evidence.torque_margin, 0.0);
@@ -241,12 +241,12 @@ TEST(LiftSearch, AgreesWithTwoHundredVoltagesOnRandomVehicles) {
     }
     if (found.outcome == FrequencyOutcome::reached) {
       ++reached;
-      Vehicle<double> at = vehicle;
-      at.voltage = found.voltage;
-      const SteadyFlapping there = find_steady_flapping(at, {}, start_up_in_time());
+      Vehicle<double> moved = vehicle;
+      moved.voltage = found.voltage;
+      const SteadyFlapping there = find_steady_flapping(moved, {}, start_up_in_time());
       ASSERT_EQ(there.status, FlappingStatus::flapping);
       EXPECT_NEAR(there.metrics[Metric::lift_mean] / target, 1.0, 1e-6);
-      EXPECT_TRUE(domain_of(at, there.metrics).none());
+      EXPECT_TRUE(domain_of(moved, there.metrics).none());
       if (crossing < t.voltages.size()) {
         EXPECT_LE(found.voltage, t.voltages[crossing] * (1.0 + 1e-9)) << describe(found.finding);
       }
@@ -328,11 +328,11 @@ TEST(FrequencySearch, KeepsToTheDomainUnlessAsked) {
   EXPECT_EQ(outside.kind, SearchFinding::Kind::out_of_range);
   EXPECT_EQ(outside.sought, Sought::frequency);
   EXPECT_EQ(outside.target, 60.0);
-  ASSERT_TRUE(outside.at && outside.most);
-  EXPECT_LE(outside.at->value, 60.0 * (1.0 + 1e-6));
-  EXPECT_LT(outside.most->value, outside.at->value);
-  EXPECT_EQ(outside.most->value, refused.search->closest_value);
-  EXPECT_EQ(outside.most->voltage, refused.search->closest_voltage);
+  ASSERT_TRUE(outside.point && outside.max_point);
+  EXPECT_LE(outside.point->value, 60.0 * (1.0 + 1e-6));
+  EXPECT_LT(outside.max_point->value, outside.point->value);
+  EXPECT_EQ(outside.max_point->value, refused.search->closest_value);
+  EXPECT_EQ(outside.max_point->voltage, refused.search->closest_voltage);
   ASSERT_EQ(outside.limits.size(), 1u);
   EXPECT_EQ(outside.limits[0].limit, DomainLimit::angle_of_attack);
   EXPECT_LT(outside.limits[0].value, 0.0);
@@ -387,11 +387,11 @@ TEST(FrequencySearch, AJumpIsSaidAfterOneBracket) {
     const FrequencySearch found = find_voltage_for_frequency(v, target, {}, start_up_in_time());
     ASSERT_EQ(found.outcome, FrequencyOutcome::jumps) << describe(found.finding);
     EXPECT_LT(found.evaluations, 24);
-    ASSERT_TRUE(found.finding.at && found.finding.least);
-    EXPECT_NEAR(found.finding.least->value, 243.2, 0.5);
-    EXPECT_NEAR(found.finding.at->value, 268.55, 0.1);
-    EXPECT_LT(found.finding.at->voltage / found.finding.least->voltage, 1.0 + 2e-4);
-    EXPECT_NEAR(found.finding.at->voltage, 89.778, 0.01);
+    ASSERT_TRUE(found.finding.point && found.finding.min_point);
+    EXPECT_NEAR(found.finding.min_point->value, 243.2, 0.5);
+    EXPECT_NEAR(found.finding.point->value, 268.55, 0.1);
+    EXPECT_LT(found.finding.point->voltage / found.finding.min_point->voltage, 1.0 + 2e-4);
+    EXPECT_NEAR(found.finding.point->voltage, 89.778, 0.01);
   }
 }
 
@@ -423,12 +423,12 @@ TEST(FrequencySearch, OutsideTheDomainIsSaidAfterOneBracket) {
     ++outside;
     evaluations += found.evaluations;
     EXPECT_LT(found.evaluations, 24) << describe(found.finding);
-    ASSERT_TRUE(found.finding.most) << describe(found.finding);
-    Vehicle<double> at = v;
-    at.voltage = (1.0 - 1e-4) * found.finding.most->voltage;
-    EXPECT_TRUE(domain_of(at, find_steady_flapping(at, {}, start_up_in_time()).metrics).none());
-    at.voltage = (1.0 + 2e-4) * found.finding.most->voltage;
-    EXPECT_FALSE(domain_of(at, find_steady_flapping(at, {}, start_up_in_time()).metrics).none());
+    ASSERT_TRUE(found.finding.max_point) << describe(found.finding);
+    Vehicle<double> moved = v;
+    moved.voltage = (1.0 - 1e-4) * found.finding.max_point->voltage;
+    EXPECT_TRUE(domain_of(moved, find_steady_flapping(moved, {}, start_up_in_time()).metrics).none());
+    moved.voltage = (1.0 + 2e-4) * found.finding.max_point->voltage;
+    EXPECT_FALSE(domain_of(moved, find_steady_flapping(moved, {}, start_up_in_time()).metrics).none());
   }
   EXPECT_GT(outside, 25);
   EXPECT_LT(evaluations, 10 * outside);

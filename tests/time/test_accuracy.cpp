@@ -103,15 +103,15 @@ TEST(Accuracy, HeavyRotorsKeepTheTolerance) {
 }
 
 /// How far a transient's metrics are from the orbit's, over the tolerance asked for.
-double transient_off(const Vehicle<double>& vehicle, double tolerance, const char* of) {
+double transient_off(const Vehicle<double>& vehicle, double tolerance, const char* what) {
   TransientOptions options;
   options.tolerance = tolerance;
   const auto start = std::chrono::steady_clock::now();
   const TransientResult found = simulate_start_up(vehicle, options);
-  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << of;
-  EXPECT_EQ(found.status, FlappingStatus::flapping) << of << ": " << describe(found.evidence);
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << what;
+  EXPECT_EQ(found.status, FlappingStatus::flapping) << what << ": " << describe(found.evidence);
   const SteadyFlapping exact = find_steady_flapping(vehicle, {.tolerance = 1e-12, .stability = false});
-  EXPECT_EQ(exact.status, FlappingStatus::flapping) << of << ": " << describe(exact.evidence);
+  EXPECT_EQ(exact.status, FlappingStatus::flapping) << what << ": " << describe(exact.evidence);
   return found.metrics ? metrics_apart(*found.metrics, exact.metrics) / tolerance : INFINITY;
 }
 

@@ -127,15 +127,15 @@ TEST(DirectDrive, SmallAmplitudesResonateWithTotalInertia) {
     EXPECT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
     return found;
   };
-  const SteadyFlapping at = peak(1.0);
+  const SteadyFlapping resonant = peak(1.0);
   const Motor<double>& m = d.motor.constants;
   const double K = m.torque_constant;
   const double closed = K * 1e-7 / (K * K + m.armature_resistance * m.viscous_damping);
-  EXPECT_NEAR(at.metrics[Metric::flapping_velocity_peak] / closed, 1.0, 1e-6);
-  EXPECT_NEAR(at.crank_speed / closed, 0.0, 1e-6);
-  EXPECT_NEAR(at.metrics[Metric::frequency], 22.0, 1e-12);
-  EXPECT_LT(peak(0.99).metrics[Metric::flapping_velocity_peak], at.metrics[Metric::flapping_velocity_peak]);
-  EXPECT_LT(peak(1.01).metrics[Metric::flapping_velocity_peak], at.metrics[Metric::flapping_velocity_peak]);
+  EXPECT_NEAR(resonant.metrics[Metric::flapping_velocity_peak] / closed, 1.0, 1e-6);
+  EXPECT_NEAR(resonant.crank_speed / closed, 0.0, 1e-6);
+  EXPECT_NEAR(resonant.metrics[Metric::frequency], 22.0, 1e-12);
+  EXPECT_LT(peak(0.99).metrics[Metric::flapping_velocity_peak], resonant.metrics[Metric::flapping_velocity_peak]);
+  EXPECT_LT(peak(1.01).metrics[Metric::flapping_velocity_peak], resonant.metrics[Metric::flapping_velocity_peak]);
 }
 
 TEST(DirectDrive, PeakSpeedAtResonanceSolvesTheHarmonicBalance) {

@@ -136,7 +136,7 @@ TEST_P(WideMechanism, OrbitAndSimulationInTimeAgree) {
   EXPECT_GT(others, 0);
 }
 INSTANTIATE_TEST_SUITE_P(Transmissions, WideMechanism, testing::Values(FarBox::four_bar, FarBox::tabulated),
-                         [](const auto& of) { return std::string(far_box_names[std::size_t(of.param)]); });
+                         [](const auto& tested) { return std::string(far_box_names[std::size_t(tested.param)]); });
 
 }  // namespace
 }  // namespace wingbeat

@@ -22,14 +22,14 @@ static_assert(detail::TimeModel<PitchDirectModel>);
 TEST(PitchDirectModel, ReachesTheOrbitFromRest) {
   using System = PitchDirectSystem<double, 5>;
   for (const double stop : {infinity, 0.5}) {
-    Vehicle<double> of = pitching_vehicle(2e-4);
-    of.pitch.hinge.stop = stop;
-    const System system{of, {0.5, 60.0, 0.5, 60.0, 0.1}};
+    Vehicle<double> v = pitching_vehicle(2e-4);
+    v.pitch.hinge.stop = stop;
+    const System system{v, {0.5, 60.0, 0.5, 60.0, 0.1}};
     solver::Iterate<System> cycle;
     const auto found = solver::solve_periodic(system, {}, {.tolerance = 1e-10, .max_steps = 2000}, cycle);
     ASSERT_EQ(found.status, solver::PeriodicStatus::converged) << describe(found.status);
 
-    PitchDirectModel model(of);
+    PitchDirectModel model(v);
     model.start({});
     constexpr int periods = 30;
     ASSERT_EQ(step_to(model, periods * model.period, 1e-11), StepOutcome::reached);
@@ -50,16 +50,16 @@ TEST(PitchDirectModel, ReachesTheOrbitsOfRandomVehicles) {
   std::mt19937_64 random(2611);
   int stopped = 0;
   for (int n = 0; n < 60; ++n) {
-    const Vehicle<double> of = random_pitching_vehicle(random, n % 2 == 1);
-    validate(of.pitch, of.wing_count * of.wing_inertia);
-    const System system{of, {0.5, 60.0, 0.5, 60.0, 0.1}};
+    const Vehicle<double> v = random_pitching_vehicle(random, n % 2 == 1);
+    validate(v.pitch, v.wing_count * v.wing_inertia);
+    const System system{v, {0.5, 60.0, 0.5, 60.0, 0.1}};
     solver::Iterate<System> cycle;
     const auto found = solver::solve_periodic(system, {}, {.tolerance = 1e-9, .max_steps = 2000}, cycle);
     ASSERT_EQ(found.status, solver::PeriodicStatus::converged) << n << ": " << describe(found.status);
     stopped += impact_loss(system, cycle) > 0.0;
     // What is left of the start after so many periods is a ten-millionth.
     const double periods = std::ceil(std::max(20.0, std::log(1e-7) / std::log(found.floquet_multiplier_max)));
-    PitchDirectModel model(of);
+    PitchDirectModel model(v);
     model.start({});
     ASSERT_EQ(step_to(model, periods * model.period, 1e-10), StepOutcome::reached) << n;
     const double sizes[] = {0.5, 60.0, 0.5, 60.0, 0.1};
@@ -73,12 +73,12 @@ TEST(PitchDirectModel, ReachesTheOrbitsOfRandomVehicles) {
 // No supply, no damping, no air: a free swing keeps its energy, to what impacts take of it.
 TEST(PitchDirectModel, FreeSwingKeepsItsEnergy) {
   for (const double stop : {infinity, 0.6}) {
-    Vehicle<double> of = pitching_vehicle(2e-4, 0.0, Condition::vacuum);
-    of.motor.viscous_damping = of.friction.damping = of.pitch.hinge.damping = 0.0;
-    of.motor.armature_inductance = 0.0;
-    of.motor.armature_resistance = 1e15;
-    of.pitch.hinge.stop = stop;
-    PitchDirectModel model(of);
+    Vehicle<double> v = pitching_vehicle(2e-4, 0.0, Condition::vacuum);
+    v.motor.viscous_damping = v.friction.damping = v.pitch.hinge.damping = 0.0;
+    v.motor.armature_inductance = 0.0;
+    v.motor.armature_resistance = 1e15;
+    v.pitch.hinge.stop = stop;
+    PitchDirectModel model(v);
     model.start({0.8, 0.0, 0.3, 100.0, 0.0});
     const double before = model.stored_energy();
     ASSERT_EQ(step_to(model, 3.0 * model.period, 1e-12), StepOutcome::reached);
@@ -89,9 +89,9 @@ TEST(PitchDirectModel, FreeSwingKeepsItsEnergy) {
 
 // Bit-identical from a saved state.
 TEST(PitchDirectModel, RepeatsFromASavedState) {
-  Vehicle<double> of = pitching_vehicle(2e-4);
-  of.pitch.hinge.stop = 0.5;
-  PitchDirectModel model(of);
+  Vehicle<double> v = pitching_vehicle(2e-4);
+  v.pitch.hinge.stop = 0.5;
+  PitchDirectModel model(v);
   model.start({});
   ASSERT_EQ(step_to(model, 2.3 * model.period, 1e-9), StepOutcome::reached);
   const PitchDirectModel::State saved = model.now;

@@ -78,10 +78,10 @@ TEST(Simulation, MeetsStartUpOfDirectDrives) {
     const Vehicle<double> v = resolve(random_direct_design(random, n % 2 == 1));
     DirectModel model = started(v);
     const double speed = model.speed_scale, stroke = model.stroke_scale, current = model.current_scale;
-    meets(model, v, {}, 0.1, [&](const DirectModel& at, const TransientSample& s) {
-      EXPECT_NEAR(at.now.y[0], s.crank_angle, 1e-6 * stroke) << n << " " << s.time;
-      EXPECT_NEAR(at.now.y[1], s.crank_speed, 1e-5 * speed) << n << " " << s.time;
-      EXPECT_NEAR(at.current_of(at.now.t, at.now.y), s.current, 1e-5 * current) << n << " " << s.time;
+    meets(model, v, {}, 0.1, [&](const DirectModel& now, const TransientSample& s) {
+      EXPECT_NEAR(now.now.y[0], s.crank_angle, 1e-6 * stroke) << n << " " << s.time;
+      EXPECT_NEAR(now.now.y[1], s.crank_speed, 1e-5 * speed) << n << " " << s.time;
+      EXPECT_NEAR(now.current_of(now.now.t, now.now.y), s.current, 1e-5 * current) << n << " " << s.time;
     });
   }
 }

@@ -70,17 +70,17 @@ TEST(StatusEvidence, OfALockIsWhatHoldsTheCrankAndWhere) {
   const StatusEvidence friction = simulate_start_up(v).evidence;
   EXPECT_EQ(friction.kind, Evidence::friction_holds);
   const CrankKinematics<double> k = at_angle(v, friction.angle);
-  const double F_s = v.wing_count * v.spring.stiffness * stroke_angle(k) / k.wing_lever;
+  const double F_s = v.wing_count * v.spring.stiffness * stroke_angle(k) / k.wing_jacobian;
   EXPECT_NEAR(friction.friction_torque, v.friction.radius * std::abs(F_s), 1e-12);
   EXPECT_NEAR(friction.torque_margin,
-              v.friction.radius * std::abs(F_s) - std::abs(stall_torque_at_3_v - F_s * k.crank_lever), 1e-12);
+              v.friction.radius * std::abs(F_s) - std::abs(stall_torque_at_3_v - F_s * k.crank_jacobian), 1e-12);
 
   v.friction.radius = 0.0;
   const StatusEvidence springs = simulate_start_up(v).evidence;
   EXPECT_EQ(springs.kind, Evidence::springs_balance);
   EXPECT_DOUBLE_EQ(springs.torque, stall_torque_at_3_v);
   const CrankKinematics<double> there = at_angle(v, springs.angle);
-  EXPECT_NEAR(v.wing_count * v.spring.stiffness * stroke_angle(there) / there.wing_lever * there.crank_lever,
+  EXPECT_NEAR(v.wing_count * v.spring.stiffness * stroke_angle(there) / there.wing_jacobian * there.crank_jacobian,
               stall_torque_at_3_v, 1e-10);
 }
 

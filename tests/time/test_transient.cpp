@@ -236,7 +236,7 @@ TEST(Transient, WithoutVoltageNothingMoves) {
 double static_torque(const Vehicle<double>& v, double theta, double i) {
   const CrankKinematics<double> k = crank_kinematics(v.transmission, std::sin(theta), std::cos(theta));
   return v.motor.torque_constant * i -
-         v.wing_count * v.spring.stiffness * stroke_angle(k) / k.wing_lever * k.crank_lever;
+         v.wing_count * v.spring.stiffness * stroke_angle(k) / k.wing_jacobian * k.crank_jacobian;
 }
 
 TEST(Transient, LocksAgainstStrongSpringsAndFriction) {
@@ -247,7 +247,7 @@ TEST(Transient, LocksAgainstStrongSpringsAndFriction) {
   EXPECT_TRUE(r.settled);
   ASSERT_TRUE(r.lock_angle && r.torque_margin);
   const CrankKinematics<double> k = crank_kinematics(v.transmission, std::sin(*r.lock_angle), std::cos(*r.lock_angle));
-  const double F_s = v.wing_count * v.spring.stiffness * stroke_angle(k) / k.wing_lever;
+  const double F_s = v.wing_count * v.spring.stiffness * stroke_angle(k) / k.wing_jacobian;
   const double margin = v.friction.radius * std::abs(F_s) - std::abs(static_torque(v, *r.lock_angle, 3.0 / 9.0));
   EXPECT_GT(margin, 0.0);
   EXPECT_NEAR(*r.torque_margin, margin, 1e-12);

@@ -2,7 +2,7 @@
 // exercise little.
 #pragma once
 
-#include "vehicle/rungs.hpp"
+#include "vehicle/model_options.hpp"
 #include "vehicle/wide_boxes.hpp"
 
 namespace wingbeat {
@@ -29,12 +29,12 @@ inline WideVehicle drawn_further_vehicle(FurtherBox box, std::uint32_t n, std::u
   const auto base = [&](std::size_t kinds) {
     return wide_vehicle(mechanisms[std::size_t(uniform(0.0, double(kinds)))], n, seed + 1);
   };
-  const auto add = [&](WideVehicle& v, Rung rung) { add_rung(v.design, rung, n, seed); };
+  const auto add = [&](WideVehicle& v, ModelOption option) { add_model_option(v.design, option, n, seed); };
 
   // Wings on hinges that somebody could build: S_2 and S_3 drawn apart ask for root chords of up to metres. The
   // semi-ellipse of the same S_2 that is 1.5 to 8 root chords long.
   const auto put_on_hinges = [&](Design<double>& d) {
-    add_rung(d, Rung::pitch, n, seed);
+    add_model_option(d, ModelOption::pitch, n, seed);
     Planform<double>& p = d.wing.planform;
     const double chords = logarithmic(1.5, 8.0);
     p.length = std::pow(16.0 * p.s2 * chords / (pi * d.wing.count), 0.25);
@@ -47,16 +47,16 @@ inline WideVehicle drawn_further_vehicle(FurtherBox box, std::uint32_t n, std::u
       drawn = base(4);
       put_on_hinges(drawn.design);
       drawn.design.pitch.stop = uniform(0.02, 1.2);
-      if (chance(0.4)) add(drawn, Rung::gear);
+      if (chance(0.4)) add(drawn, ModelOption::gear);
       break;
     case FurtherBox::gear:
       drawn = base(3);
-      add(drawn, Rung::gear);
+      add(drawn, ModelOption::gear);
       if (chance(0.3)) put_on_hinges(drawn.design);
       break;
     case FurtherBox::heat:
       drawn = chance(0.3) ? wide_vehicle(FarBox::supplies, n, seed + 1) : base(4);
-      add(drawn, Rung::heat);
+      add(drawn, ModelOption::heat);
       if (chance(0.3)) drawn.design.motor.thermal.ambient_temperature = uniform(250.0, 350.0);
       break;
     case FurtherBox::pwm: {

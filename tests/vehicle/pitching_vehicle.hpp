@@ -22,29 +22,29 @@ inline Vehicle<double> pitching_vehicle(double stiffness, double voltage = 3.0, 
   d.wing.planform.shape = PlanformShape::semi_ellipse;
   d.wing.planform.length = 63e-3;
   d.wing.planform.root_chord = 25e-3;
-  Vehicle<double> of = resolve(d, condition);
-  PitchingWings<double>& w = of.pitch;
+  Vehicle<double> v = resolve(d, condition);
+  PitchingWings<double>& w = v.pitch;
   w.hinge = hinges_together<double>({stiffness, 2e-8}, d.wing.count);
   w.pitch_inertia = d.wing.count * 3e-9;
   w.mass_product = d.wing.count * 8e-9;
   w.moments = pitch_chord_moments(d.wing.planform, d.wing.count);
-  w.air = pitch_added_mass(of.wings.air_density, w.moments);
+  w.air = pitch_added_mass(v.wings.air_density, w.moments);
   w.normal_force = NormalForce::normal_force;
-  return of;
+  return v;
 }
 
 /// Hinges from soft to stiff, with and without stops, driven below and above resonance.
 inline Vehicle<double> random_pitching_vehicle(std::mt19937_64& random, bool stops) {
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
   const double stiffness = std::exp(uniform(std::log(5e-5), std::log(3e-3)));
-  Vehicle<double> of = pitching_vehicle(stiffness, uniform(0.5, 5.0));
-  of.drive_frequency = uniform(14.0, 34.0);
-  of.pitch.pitch_inertia *= std::exp(uniform(-0.7, 0.7));
-  of.pitch.mass_product *= uniform(-0.5, 1.2);
-  of.pitch.hinge.damping *= std::exp(uniform(-3.0, 3.0));
-  if (uniform(0.0, 1.0) < 0.3) of.pitch.rotational_coefficient = 0.0;
-  if (stops) of.pitch.hinge.stop = uniform(0.05, 0.6);
-  return of;
+  Vehicle<double> v = pitching_vehicle(stiffness, uniform(0.5, 5.0));
+  v.drive_frequency = uniform(14.0, 34.0);
+  v.pitch.pitch_inertia *= std::exp(uniform(-0.7, 0.7));
+  v.pitch.mass_product *= uniform(-0.5, 1.2);
+  v.pitch.hinge.damping *= std::exp(uniform(-3.0, 3.0));
+  if (uniform(0.0, 1.0) < 0.3) v.pitch.rotational_coefficient = 0.0;
+  if (stops) v.pitch.hinge.stop = uniform(0.05, 0.6);
+  return v;
 }
 
 }  // namespace wingbeat

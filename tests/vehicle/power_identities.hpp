@@ -84,8 +84,8 @@ class PowerIdentities {
     if (!(v_.wings.air_density > 0.0)) require(at(Metric::power_aerodynamic) == 0.0, "aerodynamic = 0");
   }
 
-  void ratio(Metric which, Metric of, Metric to) {
-    if (at(to) > 0.0) exactly(at(which), at(of) / at(to), metric_info(which).key);
+  void ratio(Metric which, Metric from, Metric to) {
+    if (at(to) > 0.0) exactly(at(which), at(from) / at(to), metric_info(which).key);
     else require(!std::isfinite(m_[which]), metric_info(which).key);
   }
   void efficiencies() {

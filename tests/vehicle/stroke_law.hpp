@@ -20,8 +20,8 @@ struct StrokeLaw {
   S radius;     ///< [m]
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.amplitude, of.second, of.phase, of.mean, of.radius);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.amplitude, self.second, self.phase, self.mean, self.radius);
   }
 };
 
@@ -36,9 +36,9 @@ CrankKinematics<S> crank_kinematics(const StrokeLaw<S>& law, const S& sin_theta,
   k.stroke_offset = law.mean + law.amplitude * (sine + law.second * sine2);
   k.tan_stroke = S(0.0);
   k.stroke_slope = law.amplitude * (cosine + S(2.0) * law.second * cosine2);
-  k.stroke_curve = -law.amplitude * (sine + S(4.0) * law.second * sine2);
-  k.wing_lever = law.radius;
-  k.crank_lever = law.radius * k.stroke_slope;
+  k.stroke_second_derivative = -law.amplitude * (sine + S(4.0) * law.second * sine2);
+  k.wing_jacobian = law.radius;
+  k.crank_jacobian = law.radius * k.stroke_slope;
   return k;
 }
 
@@ -92,9 +92,10 @@ struct StrokeLawVehicle {
   WingLimits<S> wing_limits = {};
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
-               of.source_resistance, of.drive_frequency, of.thermal, of.motors, of.load_torque, of.wing_limits);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.voltage, self.motor, self.transmission, self.friction, self.spring, self.wing_count,
+               self.wing_inertia, self.wings, self.source_resistance, self.drive_frequency, self.thermal, self.motors,
+               self.load_torque, self.wing_limits);
   }
 };
 

@@ -19,8 +19,8 @@ struct WithoutItsLast {
   S forgotten = S(0);
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.listed, of.law);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.listed, self.law);
   }
 };
 
@@ -31,8 +31,8 @@ struct WithoutItsFirst {
   S last = S(0);
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.listed, of.last);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.listed, self.last);
   }
 };
 
@@ -42,8 +42,8 @@ struct WithoutItsChoice {
   FrictionLaw forgotten = FrictionLaw::none;
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.listed);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.listed);
   }
 };
 

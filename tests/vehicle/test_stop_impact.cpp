@@ -23,7 +23,8 @@ void at_random_states(const Use& use) {
     const double theta = uniform(0.0, two_pi), psi = uniform(-0.8, 0.8);
     const CrankKinematics<double> k =
         n % 4 == 0 ? direct_kinematics<double>() : crank_kinematics(v.transmission, std::sin(theta), std::cos(theta));
-    if (!(k.wing_lever > 0.0) || !(effective_inertia(v, k, 1.0) > 0.0 && effective_inertia(v, k, -1.0) > 0.0)) continue;
+    if (!(k.wing_jacobian > 0.0) || !(effective_inertia(v, k, 1.0) > 0.0 && effective_inertia(v, k, -1.0) > 0.0))
+      continue;
     ++used;
     use(v, k, uniform(0.5, 1.5) * 100.0, psi, uniform(-200.0, 200.0));
   }
@@ -31,27 +32,29 @@ void at_random_states(const Use& use) {
 }
 
 double energy(const Vehicle<double>& v, const CrankKinematics<double>& k, double omega, double psi, double velocity) {
-  const PitchState<double> at = pitch_state(psi, velocity, k.stroke_slope * omega);
-  return kinetic_energy(pitch_inertia(v.pitch, v.wing_count * v.wing_inertia, at), at);
+  const PitchState<double> state = pitch_state(psi, velocity, k.stroke_slope * omega);
+  return kinetic_energy(pitch_inertia(v.pitch, v.wing_count * v.wing_inertia, state), state);
 }
 
 TEST(StopImpact, PartsAddUpAndNoneGivesEnergy) {
   at_random_states(
       [](const Vehicle<double>& v, const CrankKinematics<double>& k, double omega, double psi, double velocity) {
-        const StopImpact<double> of = stop_impact(v, v.pitch, k, omega, psi, velocity, 1.0);
-        const double J = v.motor.inertia, after = omega + of.shaft_speed, mean = omega + 0.5 * of.shaft_speed;
+        const StopImpact<double> impact = stop_impact(v, v.pitch, k, omega, psi, velocity, 1.0);
+        const double J = v.motor.inertia, after = omega + impact.shaft_speed, mean = omega + 0.5 * impact.shaft_speed;
         const double rotor = 0.5 * J * (square(omega) - square(after));
         const double wings = energy(v, k, omega, psi, velocity) - energy(v, k, after, psi, 0.0);
         const double size = rotor == 0.0 ? wings : std::abs(rotor) + std::abs(wings);
-        EXPECT_NEAR(of.motor_work + of.gear_work, rotor, 1e-9 * size);
-        EXPECT_NEAR(rotor + wings, of.gear_work + of.friction_work + of.residual_work + of.stop_work, 1e-9 * size);
-        EXPECT_NEAR(of.motor_work,
-                    of.friction_work + of.residual_work + of.rod_impulse * k.wing_lever * k.stroke_slope * mean,
+        EXPECT_NEAR(impact.motor_work + impact.gear_work, rotor, 1e-9 * size);
+        EXPECT_NEAR(rotor + wings, impact.gear_work + impact.friction_work + impact.residual_work + impact.stop_work,
                     1e-9 * size);
-        EXPECT_GE(of.stop_work, 0.0);
+        EXPECT_NEAR(
+            impact.motor_work,
+            impact.friction_work + impact.residual_work + impact.rod_impulse * k.wing_jacobian * k.stroke_slope * mean,
+            1e-9 * size);
+        EXPECT_GE(impact.stop_work, 0.0);
         if (after > 0.0) {
-          EXPECT_GE(of.gear_work, 0.0);
-          EXPECT_GE(of.friction_work, 0.0);
+          EXPECT_GE(impact.gear_work, 0.0);
+          EXPECT_GE(impact.friction_work, 0.0);
         }
       });
 }

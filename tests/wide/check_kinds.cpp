@@ -199,15 +199,15 @@ Row check(FurtherBox box, const Arguments& arguments) {
   Row row;
   row.vehicles = count;
   for (std::size_t n = 0; n < count; ++n) {
-    const auto& of = found[n];
-    const Answer& reference = of[in_time];
+    const auto& outcome = found[n];
+    const Answer& reference = outcome[in_time];
     const double least = least_power(vehicles[n]);
     ++row.by_status[std::size_t(reference.status)];
     const bool averages = vehicles[n].design.supply.type == SupplyType::pwm;  // cycles share no period with the supply
     std::string remarks;
     const auto remark = [&](const std::string& text) { remarks += "\n    " + text; };
     for (int s = 0; s < solver_count; ++s) {
-      const Answer& a = of[std::size_t(s)];
+      const Answer& a = outcome[std::size_t(s)];
       if (!a.asked) continue;
       const std::string name = solver_names[s];
       row.seconds[s] = std::max(row.seconds[s], a.seconds);
@@ -224,7 +224,7 @@ Row check(FurtherBox box, const Arguments& arguments) {
       row.imbalance[s] = std::max(row.imbalance[s], open);
       if (!(open <= balance_open)) ++row.open[s], remark(name + ": energy balance open by " + std::to_string(open));
       if (averages && s == by_orbit) continue;
-      const Answer& beside = s == batched ? of[by_orbit] : reference;
+      const Answer& beside = s == batched ? outcome[by_orbit] : reference;
       const char* where = "";
       const double off = s == in_time || !beside.flaps() ? 0.0 : apart(a.metrics, beside.metrics, least, where);
       if (std::isfinite(off)) row.apart[s] = std::max(row.apart[s], off);
@@ -240,8 +240,9 @@ Row check(FurtherBox box, const Arguments& arguments) {
     if (arguments.one) {
       std::printf("# condition %s\n%s", name_of(vehicles[n].condition), write_design(vehicles[n].design).c_str());
       for (int k = 0; k < metric_count; ++k) {
-        std::printf("# %-34s %22.15g %22.15g %22.15g\n", metric_info(Metric(k)).key, of[by_orbit].metrics[Metric(k)],
-                    of[in_time].metrics[Metric(k)], of[batched].metrics[Metric(k)]);
+        std::printf("# %-34s %22.15g %22.15g %22.15g\n", metric_info(Metric(k)).key,
+                    outcome[by_orbit].metrics[Metric(k)], outcome[in_time].metrics[Metric(k)],
+                    outcome[batched].metrics[Metric(k)]);
       }
     }
     std::fflush(stdout);
@@ -265,9 +266,9 @@ Arguments read_arguments(int argc, char** argv) {
   while (words.next()) {
     if (words.is("--box")) {
       const std::string name = words.value();
-      const auto at = std::find(further_box_names.begin(), further_box_names.end(), name);
-      if (at == further_box_names.end()) words.refuse("there is no box \"" + name + "\"");
-      a.only_box = int(at - further_box_names.begin());
+      const auto named = std::find(further_box_names.begin(), further_box_names.end(), name);
+      if (named == further_box_names.end()) words.refuse("there is no box \"" + name + "\"");
+      a.only_box = int(named - further_box_names.begin());
     } else if (words.is("--vehicle")) {
       a.one = true, a.first = words.number();
     } else if (words.is("--first")) {

@@ -37,20 +37,21 @@ struct Checked {
 };
 
 Checked checked(const Design<double>& design, bool points) {
-  Checked of;
+  Checked result;
   try {
     validate(design);
-    const Linearisation at = linearise(design);
-    if (!at.model) return of;
-    of.flaps = true;
-    of.cycles = slopes_against_cycles(at.orbit);
-    of.gain = lift_slope_apart(at, wing_load_slopes(at.orbit.record)[0][std::size_t(WingLoad::lift)]);
-    if (points) of.points = slopes_against_points(allocation_maps(at, 4e-3));
+    const Linearisation linearisation = linearise(design);
+    if (!linearisation.model) return result;
+    result.flaps = true;
+    result.cycles = slopes_against_cycles(linearisation.orbit);
+    result.gain =
+        lift_slope_apart(linearisation, wing_load_slopes(linearisation.orbit.record)[0][std::size_t(WingLoad::lift)]);
+    if (points) result.points = slopes_against_points(allocation_maps(linearisation, 4e-3));
   } catch (const ParameterError&) {
   } catch (const std::exception& error) {
-    of.error = error.what();
+    result.error = error.what();
   }
-  return of;
+  return result;
 }
 
 struct Row {
@@ -60,11 +61,11 @@ struct Row {
 
 /// Draws vehicles in order of their numbers until `count` flap.
 Row check(MapKind kind, bool stops, const Arguments& arguments) {
-  const std::size_t most = arguments.one ? 1 : 20 * arguments.count;
-  std::vector<Checked> found(most);
+  const std::size_t max_drawn = arguments.one ? 1 : 20 * arguments.count;
+  std::vector<Checked> found(max_drawn);
   std::atomic<std::size_t> next{0}, flapping{0};
   const auto work = [&] {
-    for (std::size_t n = next++; n < most && flapping < arguments.count; n = next++) {
+    for (std::size_t n = next++; n < max_drawn && flapping < arguments.count; n = next++) {
       found[n] =
           checked(map_vehicle(kind, stops, std::uint32_t(arguments.first + n), arguments.seed), arguments.points);
       if (found[n].flaps) ++flapping;
@@ -76,27 +77,29 @@ Row check(MapKind kind, bool stops, const Arguments& arguments) {
   for (std::thread& t : threads) t.join();
 
   Row row;
-  for (std::size_t n = 0; n < most && row.vehicles < arguments.count; ++n) {
-    const Checked& of = found[n];
+  for (std::size_t n = 0; n < max_drawn && row.vehicles < arguments.count; ++n) {
+    const Checked& outcome = found[n];
     ++row.drawn;
     const std::size_t number = arguments.first + n;
     const auto remark = [&](const std::string& text) {
       std::printf("%s %zu%s: %s\n", map_kind_names[std::size_t(kind)].data(), number, stops ? " with stops" : "",
                   text.c_str());
     };
-    if (!of.error.empty()) ++row.errors, remark("threw: " + of.error);
-    if (!of.flaps) continue;
+    if (!outcome.error.empty()) ++row.errors, remark("threw: " + outcome.error);
+    if (!outcome.flaps) continue;
     ++row.vehicles;
-    row.compared += std::size_t(of.cycles.compared), row.beyond += std::size_t(of.cycles.beyond);
-    row.points += std::size_t(of.points.compared), row.bent += std::size_t(of.points.beyond);
-    row.apart = std::max(row.apart, of.cycles.apart), row.worst = std::max(row.worst, of.cycles.worst);
-    row.gain = std::max(row.gain, of.gain);
-    if (of.cycles.beyond > 0)
-      remark(of.cycles.where + ": " + std::to_string(of.cycles.worst) + " times what is allowed");
-    if (of.gain > gain_apart) ++row.gains, remark("lift slope off the steady gain by " + std::to_string(of.gain));
+    row.compared += std::size_t(outcome.cycles.compared), row.beyond += std::size_t(outcome.cycles.beyond);
+    row.points += std::size_t(outcome.points.compared), row.bent += std::size_t(outcome.points.beyond);
+    row.apart = std::max(row.apart, outcome.cycles.apart), row.worst = std::max(row.worst, outcome.cycles.worst);
+    row.gain = std::max(row.gain, outcome.gain);
+    if (outcome.cycles.beyond > 0)
+      remark(outcome.cycles.where + ": " + std::to_string(outcome.cycles.worst) + " times what is allowed");
+    if (outcome.gain > gain_apart)
+      ++row.gains, remark("lift slope off the steady gain by " + std::to_string(outcome.gain));
     if (arguments.one) {
-      remark("from cycles at worst " + std::to_string(of.cycles.worst) + " (" + of.cycles.where + "), from points " +
-             std::to_string(of.points.worst) + " (" + of.points.where + ") times what is allowed");
+      remark("from cycles at worst " + std::to_string(outcome.cycles.worst) + " (" + outcome.cycles.where +
+             "), from points " + std::to_string(outcome.points.worst) + " (" + outcome.points.where +
+             ") times what is allowed");
       std::printf("%s", write_design(map_vehicle(kind, stops, std::uint32_t(number), arguments.seed)).c_str());
     }
   }
@@ -109,9 +112,9 @@ Arguments read_arguments(int argc, char** argv) {
   while (words.next()) {
     if (words.is("--kind")) {
       const std::string name = words.value();
-      const auto at = std::find(map_kind_names.begin(), map_kind_names.end(), name);
-      if (at == map_kind_names.end()) words.refuse("there is no kind \"" + name + "\"");
-      a.kind = int(at - map_kind_names.begin());
+      const auto named = std::find(map_kind_names.begin(), map_kind_names.end(), name);
+      if (named == map_kind_names.end()) words.refuse("there is no kind \"" + name + "\"");
+      a.kind = int(named - map_kind_names.begin());
     } else if (words.is("--stops")) {
       const std::string name = words.value();
       if (name != "yes" && name != "no") words.refuse("--stops yes or no");

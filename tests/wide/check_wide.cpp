@@ -3,11 +3,11 @@
 //   check_wide [COUNT]            vehicles of each box, 500 unless given
 //     --box NAME                  that box alone (after --packs: reference, friction_laws or smooth_direct)
 //     --vehicle N                 that vehicle of the box alone, with its file and every decision
-//     --rung NAME                 with added_mass, gear, heat, all_rungs or pitch on top of every vehicle
+//     --model-option NAME         with added_mass, gear, heat, all_options or pitch on top of every vehicle
 //     --seed S  --threads T
-//   check_wide --rungs [COUNT]    slider-cranks, four-bars, tabulated laws and direct drives with each rung
+//   check_wide --model-options [COUNT]  slider-cranks, four-bars, tabulated laws and direct drives with each option
 //   check_wide --packs [COUNT]    batched against scalar orbit alone, slider-cranks around the reference and wide and
-//                                 smooth direct drives, with and without rungs; 10,000 unless given
+//                                 smooth direct drives, with and without model options; 10,000 unless given
 // Exit status 1 if any two statuses, or the orbits reached, differ.
 #include <algorithm>
 #include <array>
@@ -22,8 +22,8 @@
 #include <vector>
 
 #include "vehicle/direct_design.hpp"
+#include "vehicle/model_options.hpp"
 #include "vehicle/random_vehicle.hpp"
-#include "vehicle/rungs.hpp"
 #include "vehicle/wide_boxes.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/ensemble/ensemble_member.hpp"
@@ -244,8 +244,8 @@ constexpr std::array packs_boxes = {std::pair{std::string_view("reference"), Pac
 struct Arguments {
   int count = 500, only_box = -1, only_vehicle = -1, threads = int(std::thread::hardware_concurrency());
   std::uint32_t seed = 12;
-  Rung rung = Rung::none;
-  bool rungs = false, packs = false;
+  ModelOption option = ModelOption::none;
+  bool model_options = false, packs = false;
   std::string_view packs_of = "";  ///< the box alone
 };
 
@@ -269,14 +269,14 @@ Arguments read_arguments(int argc, char** argv) {
       }
       if (a.only_box < 0) std::fprintf(stderr, "--box: none of that name\n"), std::exit(2);
       ++k;
-    } else if (word == "--rung") {
-      for (std::size_t r = 0; value && r < rung_names.size(); ++r) {
-        if (rung_names[r] == value) a.rung = Rung(r);
+    } else if (word == "--model-option") {
+      for (std::size_t r = 0; value && r < model_option_names.size(); ++r) {
+        if (model_option_names[r] == value) a.option = ModelOption(r);
       }
-      if (a.rung == Rung::none) std::fprintf(stderr, "--rung: none of that name\n"), std::exit(2);
+      if (a.option == ModelOption::none) std::fprintf(stderr, "--model-option: none of that name\n"), std::exit(2);
       ++k;
-    } else if (word == "--rungs") {
-      a.rungs = true, a.count = 200;
+    } else if (word == "--model-options") {
+      a.model_options = true, a.count = 200;
     } else if (word == "--packs") {
       a.packs = true, a.count = 10000;
     } else if (word == "--vehicle") {
@@ -299,7 +299,7 @@ Counts check_box(FarBox box, const Arguments& arguments) {
   std::vector<WideVehicle> vehicles(count);
   for (std::size_t n = 0; n < count; ++n) {
     vehicles[n] = wide_vehicle(box, number_of(n), arguments.seed);
-    add_rung(vehicles[n].design, arguments.rung, number_of(n), arguments.seed);
+    add_model_option(vehicles[n].design, arguments.option, number_of(n), arguments.seed);
     validate(vehicles[n].design);
   }
   std::vector<Comparison> found(count);
@@ -388,8 +388,9 @@ Counts check_box(FarBox box, const Arguments& arguments) {
   return c;
 }
 
-std::string name_with_rung(std::string_view name, Rung rung) {
-  return std::string(name) + (rung == Rung::none ? "" : "+" + std::string(rung_names[std::size_t(rung)]));
+std::string name_with_option(std::string_view name, ModelOption option) {
+  return std::string(name) +
+         (option == ModelOption::none ? "" : "+" + std::string(model_option_names[std::size_t(option)]));
 }
 
 /// Packs against the scalar orbit search, both at the tolerance; no simulation in time, which the ensemble asks by
@@ -399,10 +400,11 @@ int check_packs(const Arguments& arguments) {
   std::printf("%-28s %6s %9s | %8s %14s | %s\n", "box", "", "", "differ", "> 2e-6", "relative");
   int other = 0;
   for (const auto& [name, kind] : packs_boxes) {
-    for (const Rung rung : {Rung::none, Rung::added_mass, Rung::gear, Rung::heat, Rung::all}) {
+    for (const ModelOption option :
+         {ModelOption::none, ModelOption::added_mass, ModelOption::gear, ModelOption::heat, ModelOption::all}) {
       if (!arguments.packs_of.empty() && arguments.packs_of != name) continue;
-      if (kind == PacksBox::direct && rung == Rung::gear) continue;  // no gear efficiency of a direct drive
-      const std::string box = name_with_rung(name, rung);
+      if (kind == PacksBox::direct && option == ModelOption::gear) continue;  // no gear efficiency of a direct drive
+      const std::string box = name_with_option(name, option);
       std::vector<EnsembleMember> members;
       std::vector<WideVehicle> vehicles;
       std::mt19937_64 random(arguments.seed);
@@ -410,7 +412,7 @@ int check_packs(const Arguments& arguments) {
         WideVehicle v;
         if (kind == PacksBox::wide) v = wide_vehicle(FarBox::friction_laws, std::uint32_t(n), arguments.seed);
         else v.design = kind == PacksBox::direct ? smooth_direct_design(random) : box_design(random);
-        add_rung(v.design, rung, std::uint32_t(n), arguments.seed);
+        add_model_option(v.design, option, std::uint32_t(n), arguments.seed);
         validate(v.design);
         members.push_back({resolve(v.design, v.condition), reporting_of(v.design)});
         vehicles.push_back(v);
@@ -461,21 +463,23 @@ int main(int argc, char** argv) {
   std::vector<std::pair<std::string, Counts>> rows;
   Counts total;
   const auto start = std::chrono::steady_clock::now();
-  const auto check = [&](FarBox box, Rung rung) {
+  const auto check = [&](FarBox box, ModelOption option) {
     Arguments with = arguments;
-    with.rung = rung;
-    rows.emplace_back(name_with_rung(far_box_names[std::size_t(box)], rung), check_box(box, with));
+    with.option = option;
+    rows.emplace_back(name_with_option(far_box_names[std::size_t(box)], option), check_box(box, with));
     add(total, rows.back().second);
   };
-  if (arguments.rungs) {
+  if (arguments.model_options) {
     for (const FarBox box : {FarBox::friction_laws, FarBox::four_bar, FarBox::tabulated, FarBox::direct}) {
-      for (const Rung rung : {Rung::added_mass, Rung::gear, Rung::heat, Rung::all}) {
-        if (rung != Rung::gear || box != FarBox::direct) check(box, rung);  // no gear efficiency of a direct drive
+      for (const ModelOption option :
+           {ModelOption::added_mass, ModelOption::gear, ModelOption::heat, ModelOption::all}) {
+        if (option != ModelOption::gear || box != FarBox::direct)
+          check(box, option);  // no gear efficiency of a direct drive
       }
     }
   } else {
     for (int b = 0; b < int(far_box_names.size()); ++b) {
-      if (arguments.only_box < 0 || b == arguments.only_box) check(FarBox(b), arguments.rung);
+      if (arguments.only_box < 0 || b == arguments.only_box) check(FarBox(b), arguments.option);
     }
   }
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -14,9 +14,9 @@ namespace wingbeat {
 
 /// How ranges are divided.
 struct Subdivision {
-  int first = 16;           ///< parts that the whole is divided into
-  double resolved = 1e-8;   ///< narrowest range that is divided no further
-  int most_ranges = 20000;  ///< after which the ends of a range decide about it
+  int first = 16;          ///< parts that the whole is divided into
+  double resolved = 1e-8;  ///< narrowest range that is divided no further
+  int max_ranges = 20000;  ///< after which the ends of a range decide about it
 };
 
 namespace detail {
@@ -51,7 +51,7 @@ std::vector<double> sign_cuts(const F& f, const Enclose& enclose, double from, d
     const Interval bounds = detail::bounds(over, in_middle, b - a);
     if (bounds.low > 0.0 || bounds.high < 0.0) continue;
     const bool monotone = over.slope.low > 0.0 || over.slope.high < 0.0;
-    const bool narrow = b - a <= subdivision.resolved || asked >= subdivision.most_ranges;
+    const bool narrow = b - a <= subdivision.resolved || asked >= subdivision.max_ranges;
     if (monotone || narrow) {
       if ((f(a) > 0.0) != (f(b) > 0.0)) {
         cuts.push_back(sign_change(f, a, b));
@@ -74,8 +74,8 @@ template <class F, class Enclose>
 Minimum least_value(const F& f, const Enclose& enclose, double from, double to, double exact_below, double accuracy,
                     Minimum known, const Subdivision& subdivision = {}) {
   std::vector<std::pair<double, double>> open;
-  const auto note = [&](double at, double value) {
-    if (value < known.value) known = {at, value};
+  const auto note = [&](double argument, double value) {
+    if (value < known.value) known = {argument, value};
   };
   const auto may_hold_less = [&](double low) { return low < std::min(exact_below, known.value - accuracy); };
   detail::for_each_part(from, to, subdivision.first, [&](double a, double b) {
@@ -90,7 +90,7 @@ Minimum least_value(const F& f, const Enclose& enclose, double from, double to, 
     const Enclosure over = enclose(a, b);
     if (!may_hold_less(detail::bounds(over, in_middle, b - a).low)) continue;
     const bool monotone = over.slope.low > 0.0 || over.slope.high < 0.0;
-    if (monotone || b - a <= subdivision.resolved || asked >= subdivision.most_ranges) {
+    if (monotone || b - a <= subdivision.resolved || asked >= subdivision.max_ranges) {
       note(a, f(a));
       note(b, f(b));
       continue;
@@ -98,7 +98,7 @@ Minimum least_value(const F& f, const Enclose& enclose, double from, double to, 
     constexpr double smooth = 1e-2;  // over such a range a parabola finds the least value
     if (b - a > smooth && 0.5 * (b - a) <= smooth) {
       const Minimum here = minimise(f, a, b, subdivision.resolved);
-      note(here.at, here.value);
+      note(here.argument, here.value);
     }
     open.emplace_back(a, middle);
     open.emplace_back(middle, b);

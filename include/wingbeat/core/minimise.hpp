@@ -7,8 +7,8 @@
 namespace wingbeat {
 
 struct Minimum {
-  double at;     ///< argument
-  double value;  ///< least value
+  double argument;  ///< of the minimum
+  double value;     ///< least value
 };
 
 /// A minimum of f between a and b > a, its place to `resolved` > 0 (a smooth f tells no more of it than the square root

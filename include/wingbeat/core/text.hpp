@@ -48,12 +48,12 @@ struct Utf8Character {
   bool valid = false;
 };
 
-inline Utf8Character utf8_at(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t n) { return std::uint32_t(static_cast<unsigned char>(text[at + n])); };
+inline Utf8Character utf8_at(std::string_view text, std::size_t position) {
+  const auto byte = [&](std::size_t n) { return std::uint32_t(static_cast<unsigned char>(text[position + n])); };
   const std::uint32_t first = byte(0);
   if (first < 0x80) return {first, 1, true};
   const std::size_t length = first >= 0xF0 ? 4 : first >= 0xE0 ? 3 : 2;
-  if (first < 0xC2 || first > 0xF4 || at + length > text.size()) return {first, 1, false};
+  if (first < 0xC2 || first > 0xF4 || position + length > text.size()) return {first, 1, false};
   std::uint32_t code = first & (0x7Fu >> length);
   for (std::size_t n = 1; n < length; ++n) {
     if ((byte(n) & 0xC0u) != 0x80u) return {first, 1, false};
@@ -76,12 +76,12 @@ inline bool is_hidden(std::uint32_t code) {
 /// breaks and tabs stay. In JSON, where hidden characters stand in strings alone, the same text results.
 inline std::string printable(std::string_view text) {
   std::string out;
-  for (std::size_t at = 0; at < text.size();) {
-    const Utf8Character c = utf8_at(text, at);
+  for (std::size_t position = 0; position < text.size();) {
+    const Utf8Character c = utf8_at(text, position);
     const bool kept = c.valid && (c.code == '\n' || c.code == '\t' || !is_hidden(c.code));
-    if (kept) out += text.substr(at, c.length);
+    if (kept) out += text.substr(position, c.length);
     else out += format(c.valid ? "\\u%04x" : "\\x%02x", unsigned(c.code));
-    at += c.length;
+    position += c.length;
   }
   return out;
 }

@@ -10,6 +10,6 @@ namespace wingbeat {
 /// What configuration_at() gives at the crank angles `theta` [rad], |theta| < 30, to rounding; `at` is as long. A
 /// slider-crank is computed on SIMD lanes where the processor has any.
 void configurations_at(const Vehicle<double>& vehicle, std::span<const double> theta,
-                       std::span<Configuration<double>> at);
+                       std::span<Configuration<double>> configurations);
 
 }  // namespace wingbeat

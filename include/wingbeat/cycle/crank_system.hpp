@@ -81,14 +81,15 @@ struct CrankSystem : CrankTurn<S> {
   double cancellation(const Quadrature& totals, const Quadrature& scale) const
     requires std::same_as<S, double>
   {
-    constexpr double usual = 2.0, most = 1e3;
+    constexpr double usual = 2.0, max_cancellation = 1e3;
     double largest = 1.0;
     // Near its speed without load a motor's current is the small difference of two large voltages.
     const double charge = std::abs(totals[std::size_t(Integral::current)]);
     const double drop = circuit_resistance(vehicle) * charge, back_emf = two_pi * vehicle.motor.torque_constant;
-    largest = std::max(largest, back_emf / (usual * drop + back_emf / most));
+    largest = std::max(largest, back_emf / (usual * drop + back_emf / max_cancellation));
     for (const std::size_t q : controlled_integrals) {
-      if (scale[q] > 0.0) largest = std::max(largest, scale[q] / (usual * std::abs(totals[q]) + scale[q] / most));
+      if (scale[q] > 0.0)
+        largest = std::max(largest, scale[q] / (usual * std::abs(totals[q]) + scale[q] / max_cancellation));
     }
     return largest;
   }
@@ -118,30 +119,26 @@ struct CrankSystem : CrankTurn<S> {
     using std::sin;
     return configuration_at(vehicle, S(sin(theta)), S(cos(theta)));
   }
-  Configuration<S> place(const S& theta) const
-    requires std::same_as<S, double>
-  {
-    return configuration(theta);
-  }
   template <std::size_t count>
-  std::array<Configuration<S>, count> places(const S& theta, const S& h, const double (&c)[count]) const
+  std::array<Configuration<S>, count> configurations(const S& theta, const S& h, const double (&c)[count]) const
     requires std::same_as<S, double>
   {
-    std::array<double, count> at;
-    for (std::size_t n = 0; n < count; ++n) at[n] = theta + c[n] * h;
-    std::array<Configuration<S>, count> places;
+    std::array<double, count> angles;
+    for (std::size_t n = 0; n < count; ++n) angles[n] = theta + c[n] * h;
+    std::array<Configuration<S>, count> configurations;
     if constexpr (std::same_as<V, Vehicle<double>>) {
-      configurations_at(vehicle, at, places);
+      configurations_at(vehicle, angles, configurations);
     } else {
-      for (std::size_t n = 0; n < count; ++n) places[n] = configuration(at[n]);
+      for (std::size_t n = 0; n < count; ++n) configurations[n] = configuration(angles[n]);
     }
-    return places;
+    return configurations;
   }
 
-  [[gnu::always_inline]] Motion<S> motion(const Configuration<S>& place, const State& y, const Signs& signs) const {
+  [[gnu::always_inline]] Motion<S> motion(const Configuration<S>& configuration, const State& y,
+                                          const Signs& signs) const {
     const S i = current(y);
     const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    return motion_at(vehicle, place, y[0], i, v_t, branch(signs));
+    return motion_at(vehicle, configuration, y[0], i, v_t, branch(signs));
   }
   [[gnu::always_inline]] Motion<S> motion(const S& theta, const State& y, const Signs& signs) const {
     return motion(configuration(theta), y, signs);
@@ -156,8 +153,8 @@ struct CrankSystem : CrankTurn<S> {
     return rates<quadratures>(configuration(theta), y, signs);
   }
   template <bool quadratures>
-  solver::Rates<CrankSystem> rates(const Configuration<S>& place, const State& y, const Signs& signs) const {
-    const Motion<S> m = motion(place, y, signs);
+  solver::Rates<CrankSystem> rates(const Configuration<S>& configuration, const State& y, const Signs& signs) const {
+    const Motion<S> m = motion(configuration, y, signs);
     const S per_omega = S(1.0) / y[0];
     solver::Rates<CrankSystem> r;
     r.dy[0] = m.crank_acceleration * per_omega;

@@ -53,7 +53,7 @@ class CrankTurn {
   double first_stroke() const { return first_stroke_; }
 
  private:
-  std::array<solver::FixedNode, Reversals::most> nodes_{};
+  std::array<solver::FixedNode, Reversals::max_count> nodes_{};
   std::size_t node_count_ = 0;
   double first_stroke_ = 1.0;
 };

@@ -80,13 +80,13 @@ class CycleGradient {
     totals_.fill(W(0.0));
     starts_.reserve(cycle_.steps.size());
     if constexpr (pitching) ends_.reserve(cycle_.steps.size());
-    for (std::size_t at = 0; at < cycle_.steps.size(); ++at) {
-      const auto& step = cycle_.steps[at];
-      solver::reset_map<true>(jets_, cycle_.steps, at, y, &totals_);
+    for (std::size_t ended = 0; ended < cycle_.steps.size(); ++ended) {
+      const auto& step = cycle_.steps[ended];
+      solver::reset_map<true>(jets_, cycle_.steps, ended, y, &totals_);
       starts_.push_back(y);
       const auto signs = solver::signs_of<Jets>(step);
       const auto result =
-          solver::take_step<true>(cycle_.method, jets_, system_, W(step.x), y, W(step.h), signs, stages_of(at));
+          solver::take_step<true>(cycle_.method, jets_, system_, W(step.x), y, W(step.h), signs, stages_of(ended));
       for (std::size_t q = 0; q < totals_.size(); ++q) totals_[q] += result.dq[q];
       y = result.y;
       if constexpr (pitching) {
@@ -117,12 +117,12 @@ class CycleGradient {
 
   /// The total derivative: that of the start added, the slots of the states emptied.
   J total(W x) const {
-    J of(x.a);
+    J result(x.a);
     for (int k = N; k < slots; ++k) {
       for (int n = 0; n < N; ++n) x.v[k] += x.v[n] * start_change_[n][k];
-      of.v[k - shift] = absent_slots_[k - shift] ? absent : x.v[k];
+      result.v[k - shift] = absent_slots_[k - shift] ? absent : x.v[k];
     }
-    return of;
+    return result;
   }
 
   CycleIntegrals<J> integrals() const {
@@ -170,21 +170,21 @@ class CycleGradient {
     std::array<W, 2> psi, alpha;  // least and largest
     for (std::size_t n = 0; n < cycle_.steps.size(); ++n) {
       const double way = System::stroke_sign(cycle_.steps[n].signs);
-      for (const std::size_t at : {n, n + 1}) {
-        const W pitch = pitch_at_start(at), attack = 0.5 * pi + way * pitch;
-        const bool first = n == 0 && at == 0;
+      for (const std::size_t node : {n, n + 1}) {
+        const W pitch = pitch_at_start(node), attack = 0.5 * pi + way * pitch;
+        const bool first = n == 0 && node == 0;
         if (first || pitch < psi[0]) psi[0] = pitch;
         if (first || pitch > psi[1]) psi[1] = pitch;
         if (first || attack < alpha[0]) alpha[0] = attack;
         if (first || attack > alpha[1]) alpha[1] = attack;
       }
     }
-    PitchGradient of;
-    of.amplitude = total(0.5 * (psi[1] - psi[0]));
-    of.angle_of_attack_min = total(alpha[0]);
-    of.angle_of_attack_max = total(alpha[1]);
-    of.phase = total(phase_of_pitch(totals_[std::size_t(Integral::time)]));
-    return of;
+    PitchGradient gradient;
+    gradient.amplitude = total(0.5 * (psi[1] - psi[0]));
+    gradient.angle_of_attack_min = total(alpha[0]);
+    gradient.angle_of_attack_max = total(alpha[1]);
+    gradient.phase = total(phase_of_pitch(totals_[std::size_t(Integral::time)]));
+    return gradient;
   }
 
   GradientInstant instant(double theta) const {
@@ -214,9 +214,9 @@ class CycleGradient {
 
   /// A number in the slots that are used within.
   static W shifted(const J& x) {
-    W of(x.a);
-    for (int k = N - shift; k < gradient_slots; ++k) of.v[k + shift] = x.v[k];
-    return of;
+    W result(x.a);
+    for (int k = N - shift; k < gradient_slots; ++k) result.v[k + shift] = x.v[k];
+    return result;
   }
 
   /// Where known, the states at the stages of a step.
@@ -249,11 +249,11 @@ class CycleGradient {
     const JetState& y = ends_[n - 1];
     const auto signs = solver::signs_of<Jets>(before);
     const W value = jets_.template rates<false>(W(after.x), y, signs).switches[which];
-    State at;
-    for (int i = 0; i < N; ++i) at[i] = y[i].a;
-    const State dy = system_.template rates<false>(after.x, at, before.signs).dy;
+    State state;
+    for (int i = 0; i < N; ++i) state[i] = y[i].a;
+    const State dy = system_.template rates<false>(after.x, state, before.signs).dy;
     const double slope =
-        along_.template rates<false>(Jet<1>(after.x, 0), moving(at, dy), solver::signs_of<Along>(before))
+        along_.template rates<false>(Jet<1>(after.x, 0), moving(state, dy), solver::signs_of<Along>(before))
             .switches[which]
             .v[0];
     W move(0.0);
@@ -418,15 +418,15 @@ class CycleGradient {
           const double previous = x;
           x = b.d0 - b.d1 > 0.0 ? b.x0 + (b.x1 - b.x0) * b.d0 / (b.d0 - b.d1) : 0.5 * (b.x0 + b.x1);
           const auto inside = solver::evaluate_inside<false>(system_, cycle_, step, x);
-          const Jet<1> at = candidates(b.step, x, inside.y)[c];
-          value = at.a;
-          if (std::abs(x - previous) < 1e-11 || at.v[0] == 0.0) break;
-          if (at.v[0] > 0.0) {
-            b.x0 = x, b.d0 = at.v[0];
+          const Jet<1> candidate = candidates(b.step, x, inside.y)[c];
+          value = candidate.a;
+          if (std::abs(x - previous) < 1e-11 || candidate.v[0] == 0.0) break;
+          if (candidate.v[0] > 0.0) {
+            b.x0 = x, b.d0 = candidate.v[0];
             if (side == 1) b.d1 *= 0.5;
             side = 1;
           } else {
-            b.x1 = x, b.d1 = at.v[0];
+            b.x1 = x, b.d1 = candidate.v[0];
             if (side == -1) b.d0 *= 0.5;
             side = -1;
           }

@@ -153,14 +153,14 @@ struct DirectSystem {
     const bool stuck = value_of(signs[slip]) < 0.0;
     const S omega = stuck ? S(0.0) : y[1];
     const Branch<S> on = branch(signs);
-    const Instant<S> at =
-        instant_at(vehicle, direct_kinematics<S>(), N_k_beta, omega, i, v, on.stroke, on.direction, on.pitching);
-    Motion<S> m = motion_on(vehicle, at, i, v, on);
+    const IntermediateTerms<S> terms =
+        terms_at(vehicle, direct_kinematics<S>(), N_k_beta, omega, i, v, on.stroke, on.direction, on.pitching);
+    Motion<S> m = motion_on(vehicle, terms, i, v, on);
     if (stuck) {
       m.crank_acceleration = m.stroke_acceleration = S(0.0);
       m.rod_force = m.stored_moment = N_k_beta;
-      m.motor_torque = at.motor.torque;
-      m.friction_torque = at.motor.torque - N_k_beta - vehicle.load_torque;
+      m.motor_torque = terms.motor.torque;
+      m.friction_torque = terms.motor.torque - N_k_beta - vehicle.load_torque;
     }
     return m;
   }

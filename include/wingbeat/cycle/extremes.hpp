@@ -63,12 +63,12 @@ CycleExtremes<double> cycle_extremes(const System& system, const solver::Iterate
   best.fill(absent);
   for (const Extreme e : System::extremes) best[std::size_t(e)] = -std::numeric_limits<double>::infinity();
   std::array<std::vector<Bracket>, extreme_count> brackets;
-  Candidates at;
+  Candidates begin;
   for (std::size_t n = 0; n < cycle.steps.size(); ++n) {
     const auto& step = cycle.steps[n];
     const bool last = n + 1 == cycle.steps.size();
     const bool same_branch = n > 0 && step.signs == cycle.steps[n - 1].signs;
-    if (!same_branch) at = candidates(step.x, step.y, step.first.dy, step.signs);
+    if (!same_branch) begin = candidates(step.x, step.y, step.first.dy, step.signs);
     State y1 = last ? cycle.end : cycle.steps[n + 1].y;
     const double x1 = step.x + step.h;
     // Where the rates may jump, those of the next step do not belong to this one's end, and after an impact its state
@@ -87,8 +87,8 @@ CycleExtremes<double> cycle_extremes(const System& system, const solver::Iterate
     const Candidates end = candidates(x1, y1, dy1, step.signs);
     for (const Extreme e : System::extremes) {
       const auto c = std::size_t(e);
-      best[c] = std::max({best[c], at[c].a, end[c].a});
-      Bracket bracket{&step, step.x, at[c].a, at[c].v[0], x1, end[c].a, end[c].v[0], 0.0, 0.0};
+      best[c] = std::max({best[c], begin[c].a, end[c].a});
+      Bracket bracket{&step, step.x, begin[c].a, begin[c].v[0], x1, end[c].a, end[c].v[0], 0.0, 0.0};
       if (!(bracket.d0 > 0.0 && bracket.d1 < 0.0)) {
         const double t = between_turns(step.h, bracket.v0, bracket.d0, bracket.v1, bracket.d1);
         if (t == 0.0) continue;
@@ -106,7 +106,7 @@ CycleExtremes<double> cycle_extremes(const System& system, const solver::Iterate
       estimate_maximum(bracket);
       brackets[c].push_back(bracket);
     }
-    at = end;
+    begin = end;
   }
 
   for (const Extreme e : System::extremes) {
@@ -120,12 +120,12 @@ CycleExtremes<double> cycle_extremes(const System& system, const solver::Iterate
       if (b.estimate + doubt < highest) continue;
       double x = b.step->x;
       State y = b.step->y;
-      solver::Place<System> place = solver::place_at(system, x);
+      solver::ConfigurationOf<System> configuration = solver::configuration_at(system, x);
       solver::Rates<System> rates = b.step->first;
       for (int iteration = 0; iteration < 30; ++iteration) {
         const bool moved = cycle.method == solver::Method::explicit_pair &&
                            solver::is_little(b.x - x, b.step->h, cycle.tolerance) &&
-                           solver::move_a_little<false>(system, x, b.x - x, b.step->signs, rates, y, place);
+                           solver::move_a_little<false>(system, x, b.x - x, b.step->signs, rates, y, configuration);
         if (!moved) {
           auto inside = solver::evaluate_inside<false>(system, cycle, *b.step, b.x);
           if (!inside.admissible) {
@@ -139,17 +139,17 @@ CycleExtremes<double> cycle_extremes(const System& system, const solver::Iterate
           }
           if (!inside.admissible) break;
           y = inside.y;
-          place = inside.end;
+          configuration = inside.end;
         }
         x = b.x;
-        rates = system.template rates<false>(place, y, b.step->signs);
+        rates = system.template rates<false>(configuration, y, b.step->signs);
         const Derivative value = candidates(x, y, rates.dy, b.step->signs)[c];
         const double v = value.a, d = value.v[0];
         // What is left to gain, from the flatter of the two secants of the slope.
         const double curvature = std::min(std::abs((b.d0 - d) / (b.x - b.x0)), std::abs((d - b.d1) / (b.x1 - b.x)));
         // No more than the slope gives on the rest of the way: slopes that differ by rounding alone have no curvature.
-        const double most = d > 0.0 ? d * (b.x1 - x) : d * (b.x0 - x);
-        const double gain = curvature > 0.0 ? std::min(0.5 * d * d / curvature, most) : 0.0;
+        const double max_gain = d > 0.0 ? d * (b.x1 - x) : d * (b.x0 - x);
+        const double gain = curvature > 0.0 ? std::min(0.5 * d * d / curvature, max_gain) : 0.0;
         best[c] = std::max(best[c], v);
         if (!(gain > 0.01 * tolerance * std::abs(v)) || b.x1 - b.x0 < 1e-13) {
           best[c] = std::max(best[c], v + gain);

@@ -25,7 +25,7 @@ CycleIntegrals<S> integrands(const Motion<S>& m, const S& omega, const Branch<S>
           m.friction_torque * omega,
           m.aero.power,
           branch.stored_power * m.stored_moment * m.stroke_velocity,
-          m.rod_force * (m.kinematics.crank_lever * omega - m.kinematics.wing_lever * m.stroke_velocity),
+          m.rod_force * (m.kinematics.crank_jacobian * omega - m.kinematics.wing_jacobian * m.stroke_velocity),
           m.aero.lift,
           branch.force * m.rod_force,
           m.gear_loss,
@@ -35,16 +35,16 @@ CycleIntegrals<S> integrands(const Motion<S>& m, const S& omega, const Branch<S>
 /// What an impact on a stop adds to the integrals at once.
 template <Scalar S>
 CycleIntegrals<S> impulses(const StopImpact<S>& impact) {
-  CycleIntegrals<S> of;
-  of.fill(S(0.0));
-  of[std::size_t(Integral::motor_work)] = impact.motor_work;
-  of[std::size_t(Integral::friction_work)] = impact.friction_work;
-  of[std::size_t(Integral::reactive_work)] = impact.stored_work;
-  of[std::size_t(Integral::residual_work)] = impact.residual_work;
-  of[std::size_t(Integral::lift)] = impact.lift;
-  of[std::size_t(Integral::rod_force)] = sign_of(impact.rod_impulse) * impact.rod_impulse;
-  of[std::size_t(Integral::gear_work)] = impact.gear_work;
-  return of;
+  CycleIntegrals<S> integrals;
+  integrals.fill(S(0.0));
+  integrals[std::size_t(Integral::motor_work)] = impact.motor_work;
+  integrals[std::size_t(Integral::friction_work)] = impact.friction_work;
+  integrals[std::size_t(Integral::reactive_work)] = impact.stored_work;
+  integrals[std::size_t(Integral::residual_work)] = impact.residual_work;
+  integrals[std::size_t(Integral::lift)] = impact.lift;
+  integrals[std::size_t(Integral::rod_force)] = sign_of(impact.rod_impulse) * impact.rod_impulse;
+  integrals[std::size_t(Integral::gear_work)] = impact.gear_work;
+  return integrals;
 }
 
 /// Quantities of which a cycle's extreme value is a metric.

@@ -48,9 +48,9 @@ struct PitchDirectSystem {
 
   template <Scalar T>
   PitchDirectSystem<T, N> cast() const {
-    PitchDirectSystem<T, N> of{wingbeat::cast<T>(vehicle), {}};
-    for (std::size_t n = 0; n < N; ++n) of.typical[n] = T(typical[n]);
-    return of;
+    PitchDirectSystem<T, N> system{wingbeat::cast<T>(vehicle), {}};
+    for (std::size_t n = 0; n < N; ++n) system.typical[n] = T(typical[n]);
+    return system;
   }
 
   static double period() { return two_pi; }

@@ -31,8 +31,9 @@ typename System::Real switch_of(const System& system, const PitchMotion<typename
                                 const typename System::State& y, const typename System::Signs& signs) {
   using S = typename System::Real;
   if (!has_stop(system.vehicle.pitch.hinge)) return S(1.0);
-  const S at = side<System>(y);
-  return is_held<System>(signs) ? S(at * m.stop_moment) : S(system.vehicle.pitch.hinge.stop - at * y[System::pitch]);
+  const S stop_side = side<System>(y);
+  return is_held<System>(signs) ? S(stop_side * m.stop_moment)
+                                : S(system.vehicle.pitch.hinge.stop - stop_side * y[System::pitch]);
 }
 
 /// True of a state with which a recorded cycle may begin at a stop.
@@ -47,12 +48,12 @@ template <class System>
 void hold_or_leave(const System& system, const typename System::Real& x, const typename System::State& y,
                    typename System::Signs& signs) {
   using S = typename System::Real;
-  const S at = side<System>(y);
+  const S stop_side = side<System>(y);
   signs[System::held] = S(-1.0);
-  signs[System::turn] = -at;
+  signs[System::turn] = -stop_side;
   // An impact may have turned them over.
   solver::settle_signs(system, x, y, signs);
-  if (value_of(S(at * system.pitch_motion(x, y, signs).stop_moment)) < 0.0) signs[System::held] = S(1.0);
+  if (value_of(S(stop_side * system.pitch_motion(x, y, signs).stop_moment)) < 0.0) signs[System::held] = S(1.0);
 }
 
 /// The state after the impact of one that is at a stop; what it adds to the integrals is added to `*totals`, where

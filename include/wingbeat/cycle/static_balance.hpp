@@ -38,7 +38,7 @@ S breakaway_torque(const V<S>& v) {
 /// \f]
 template <Scalar S>
 S static_rod_force(const CrankKinematics<S>& k, const S& N_k_beta) {
-  return N_k_beta / k.wing_lever;
+  return N_k_beta / k.wing_jacobian;
 }
 
 /// What friction can hold at rest [N m], \f$T_\mathrm{c}\f$ being breakaway_torque():
@@ -67,7 +67,7 @@ struct StandingTorques {
 template <template <Scalar> class V, Scalar S>
 StandingTorques<S> standing_torques(const V<S>& v, const CrankKinematics<S>& k, const S& F_s) {
   using std::abs;
-  const S load = F_s * k.crank_lever + v.load_torque, friction = v.friction.radius * abs(F_s) + v.friction.torque;
+  const S load = F_s * k.crank_jacobian + v.load_torque, friction = v.friction.radius * abs(F_s) + v.friction.torque;
   const S own = v.motor.friction_torque;
   return {-torque_before_gear(v.motor, S(friction - load)) - own,
           torque_before_gear(v.motor, S(load + friction)) + own};
@@ -82,7 +82,7 @@ template <template <Scalar> class V, Scalar S>
 S advance_torque(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, const S& torque) {
   const S F_s = static_rod_force(k, N_k_beta);
   if (has_gear_loss(v.motor)) return torque - standing_torques(v, k, F_s).high;
-  return torque - F_s * k.crank_lever - v.load_torque - holding_torque(v, F_s);
+  return torque - F_s * k.crank_jacobian - v.load_torque - holding_torque(v, F_s);
 }
 
 /// >= 0 where friction holds a crank at rest under the motor's `torque` T [N m]. Behind a gearbox: what the motor's
@@ -96,10 +96,10 @@ S lock_margin(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta, con
   using std::min;
   const S F_s = static_rod_force(k, N_k_beta);
   if (has_gear_loss(v.motor)) {
-    const StandingTorques<S> at = standing_torques(v, k, F_s);
-    return min(S(at.high - torque), S(torque - at.low));
+    const StandingTorques<S> torques = standing_torques(v, k, F_s);
+    return min(S(torques.high - torque), S(torque - torques.low));
   }
-  return holding_torque(v, F_s) - abs(S(torque - F_s * k.crank_lever - v.load_torque));
+  return holding_torque(v, F_s) - abs(S(torque - F_s * k.crank_jacobian - v.load_torque));
 }
 
 /// The least of \f$J + A (h + s \mu r_\mathrm{e})\f$ over both branches s [kg m2]; <= 0 jams.
@@ -143,19 +143,19 @@ struct LoadPlace {
   S slope;           ///< |B1| [1]
   S stroke;          ///< sign of beta'
   S spring;          ///< N_w k beta [N m]
-  S crank_lever;     ///< h [m]
+  S crank_jacobian;  ///< h [m]
   S per_wing_lever;  ///< 1 / g [1/m]
 };
 
 template <template <Scalar> class V, Scalar S>
 LoadPlace<S> load_place(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta) {
   using std::abs;
-  return {v.wing_count * v.wing_inertia * k.stroke_curve,
+  return {v.wing_count * v.wing_inertia * k.stroke_second_derivative,
           abs(k.stroke_slope),
           sign_of(k.stroke_slope),
           N_k_beta,
-          k.crank_lever,
-          inverse_of(k.wing_lever)};
+          k.crank_jacobian,
+          inverse_of(k.wing_jacobian)};
 }
 
 /// Motor torque less the mean load over evenly spaced places of a cycle at the constant crank speed omega [N m], a bar
@@ -172,7 +172,7 @@ S torque_surplus(const V<S>& v, std::span<const LoadPlace<S>> places, const S& o
   for (const LoadPlace<S>& p : places) {
     const S moment = p.inertia * square(omega) + p.stroke * aero_loads(v.wings, S(p.slope * omega)).moment + p.spring;
     const S F = moment * p.per_wing_lever;
-    load = load + F * p.crank_lever + v.friction.radius * abs(F);
+    load = load + F * p.crank_jacobian + v.friction.radius * abs(F);
   }
   if (!places.empty()) load = load * S(1.0 / double(places.size()));
   const S motor = v.motor.torque_constant * algebraic_current(v, v.voltage, omega) - v.motor.viscous_damping * omega -
@@ -205,12 +205,12 @@ BalancedSpeed<S> balanced_on_grid(const V<S>& v, std::span<const LoadPlace<S>> p
   const S no_load = no_load_speed(v), near = S(0.1) * stall_torque(v);
   BalancedSpeed<S> balanced{no_load, S(0.0), S(0.0)};
   S before = S(0.02) * no_load, surplus_before = torque_surplus(v, places, before), surplus_earlier = surplus_before;
-  const auto note_balance = [&](const S& below, const S& surplus_below, const S& omega, const S& at) {
-    const auto crossed = surplus_below > S(0.0) && at <= S(0.0);
-    const S root = below + (omega - below) * surplus_below / (surplus_below - at);
+  const auto note_balance = [&](const S& below, const S& surplus_below, const S& omega, const S& surplus) {
+    const auto crossed = surplus_below > S(0.0) && surplus <= S(0.0);
+    const S root = below + (omega - below) * surplus_below / (surplus_below - surplus);
     const auto first = crossed && balanced.count == S(0.0);
     balanced.slowest = select<S>(first, root, balanced.slowest);
-    balanced.slope = select<S>(first, (at - surplus_below) / (omega - below), balanced.slope);
+    balanced.slope = select<S>(first, (surplus - surplus_below) / (omega - below), balanced.slope);
     balanced.count = select<S>(crossed, balanced.count + S(1.0), balanced.count);
   };
   // What keeps a slow crank turning against springs is not their mean torque.
@@ -220,16 +220,16 @@ BalancedSpeed<S> balanced_on_grid(const V<S>& v, std::span<const LoadPlace<S>> p
     note_balance(S(0.0), from_standstill, before, surplus_before);
   }
   for (int n = 1; n <= speeds; ++n) {
-    const S omega = no_load * S(double(n) / speeds), at = torque_surplus(v, places, omega);
-    note_balance(before, surplus_before, omega, at);
+    const S omega = no_load * S(double(n) / speeds), surplus = torque_surplus(v, places, omega);
+    note_balance(before, surplus_before, omega, surplus);
     if (n > 1) {
-      const auto touches =
-          surplus_before > S(0.0) && surplus_before < near && surplus_before < surplus_earlier && surplus_before < at;
+      const auto touches = surplus_before > S(0.0) && surplus_before < near && surplus_before < surplus_earlier &&
+                           surplus_before < surplus;
       balanced.count = select<S>(touches, balanced.count + S(1.0), balanced.count);
     }
     surplus_earlier = surplus_before;
     before = omega;
-    surplus_before = at;
+    surplus_before = surplus;
   }
   return balanced;
 }
@@ -317,10 +317,12 @@ OrbitGuess<S> guess_orbit(const V<S>& v, std::span<const LoadPlace<std::type_ide
   mean_inertia = mean_inertia * per_place;
   mean_elastic = mean_elastic * per_place;
   const auto speed_before = [&](const S& angle) -> S {
-    const Configuration<S> at = before(angle);
-    const S kinetic = S(0.5) * mean_inertia * square(balanced) + (mean_elastic - elastic_of(at.spring_moment));
+    const Configuration<S> configuration = before(angle);
+    const S kinetic =
+        S(0.5) * mean_inertia * square(balanced) + (mean_elastic - elastic_of(configuration.spring_moment));
     // Strong springs may hold more energy than the cycle has.
-    return sqrt(max(S(S(2.0) * kinetic / inertia_of(at.kinematics.stroke_slope)), S(square(balanced * S(1.0 / 3.0)))));
+    return sqrt(max(S(S(2.0) * kinetic / inertia_of(configuration.kinematics.stroke_slope)),
+                    S(square(balanced * S(1.0 / 3.0)))));
   };
   const S lag = v.motor.armature_inductance / circuit_resistance(v);
   guess.crank_speed = select<S>(balances, speed_before(S(0.0)), balanced);

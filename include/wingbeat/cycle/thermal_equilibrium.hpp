@@ -43,7 +43,7 @@ class ThermalEquilibrium {
 
  private:
   struct Trial {
-    MotorTemperatures<double> at, leads_to;
+    MotorTemperatures<double> assumed, resulting;
   };
   bool end(ThermalOutcome outcome) {
     outcome_ = outcome;

@@ -40,12 +40,11 @@ void DirectPackOrbit<L, N>::balance() {
   // Below a speed at which even the largest drag coefficient leaves the drive a surplus, there is no response.
   const L b = m.viscous_damping;
   const CoefficientWave<L>& wave = vehicle_.wings.coefficients.drag;
-  const L most_drag =
-      L(0.5) * vehicle_.wings.air_density * vehicle_.wings.s3 * (abs(wave.offset) + abs(wave.amplitude));
-  const L most_quadratic = L(1.01) * (most_drag + vehicle_.friction.quadratic);
+  const L max_drag = L(0.5) * vehicle_.wings.air_density * vehicle_.wings.s3 * (abs(wave.offset) + abs(wave.amplitude));
+  const L max_quadratic = L(1.01) * (max_drag + vehicle_.friction.quadratic);
   const auto has_surplus = [&](const L& speed) {
-    const L most = (b + vehicle_.friction.damping + motor_real + most_quadratic * speed) * speed;
-    return magnitude(most, reactive * speed) < L(0.99) * drive;
+    const L max_moment = (b + vehicle_.friction.damping + motor_real + max_quadratic * speed) * speed;
+    return magnitude(max_moment, reactive * speed) < L(0.99) * drive;
   };
   L high = L(1.001) * drive * inverse_of(magnitude(motor_real + b, reactive));
   L at_high = surplus(resistance(high), high);

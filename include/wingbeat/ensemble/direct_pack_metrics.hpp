@@ -64,83 +64,84 @@ template <class Visit>
 void DirectPackOrbit<L, N>::for_each_zero(const std::array<L, max_nodes>& slopes, const Visit& visit) const {
   const L zero(0.0);
   for (std::size_t s = 0; s < segments_; ++s) {
-    std::array<L, points> slope, bend;
+    std::array<L, points> slope, curvature;
     slope[0] = s > 0 ? slopes[s * stages - 1] : -slopes[nodes() - 1];
     for (std::size_t m = 1; m < points; ++m) slope[m] = slopes[s * stages + m - 1];
     for (std::size_t m = 0; m < points; ++m) {
-      bend[m] = zero;
-      for (std::size_t j = 0; j < points; ++j) bend[m] = bend[m] + L(rule_.slope[m][j]) * slope[j];
+      curvature[m] = zero;
+      for (std::size_t j = 0; j < points; ++j) curvature[m] = curvature[m] + L(rule_.slope[m][j]) * slope[j];
     }
     for (std::size_t m = 1; m < points; ++m) {
       const L before = slope[m - 1], after = slope[m], sign = sign_of(before);
       const Mask where = (before > zero && !(after > zero)) || (before < zero && !(after < zero));
-      const Mask dips = before * after > zero && sign * bend[m - 1] < zero && sign * bend[m] > zero;
+      const Mask dips = before * after > zero && sign * curvature[m - 1] < zero && sign * curvature[m] > zero;
       if (!any<L>(where || dips)) continue;
-      const Polynomial of = polynomial(slope);
+      const Polynomial through_slopes = polynomial(slope);
       const L from(rule_.place[m - 1]), to(rule_.place[m]), width = to - from;
       if (any<L>(where)) {
         const L part = before * inverse_of(select<L>(where, before - after, L(1.0)));
-        visit(s, zero_of(of, 0, from + part * width, from, to, where), where);
+        visit(s, zero_of(through_slopes, 0, from + part * width, from, to, where), where);
       }
       if (!any<L>(dips)) continue;
-      const L part = bend[m - 1] * inverse_of(select<L>(dips, bend[m - 1] - bend[m], L(1.0)));
-      const L lowest = zero_of(of, 1, from + part * width, from, to, dips);
-      const L value = sign * derivative_of(of, 0, lowest), curve = sign * derivative_of(of, 2, lowest);
+      const L part = curvature[m - 1] * inverse_of(select<L>(dips, curvature[m - 1] - curvature[m], L(1.0)));
+      const L lowest = zero_of(through_slopes, 1, from + part * width, from, to, dips);
+      const L value = sign * derivative_of(through_slopes, 0, lowest),
+              curve = sign * derivative_of(through_slopes, 2, lowest);
       const Mask twice = dips && value < zero && curve > zero;
       if (!any<L>(twice)) continue;
       const L reach = sqrt(select<L>(twice, L(-2.0) * value * inverse_of(select<L>(twice, curve, L(1.0))), zero));
-      visit(s, zero_of(of, 0, max(lowest - reach, from), from, lowest, twice), twice);
-      visit(s, zero_of(of, 0, min(lowest + reach, to), lowest, to, twice), twice);
+      visit(s, zero_of(through_slopes, 0, max(lowest - reach, from), from, lowest, twice), twice);
+      visit(s, zero_of(through_slopes, 0, min(lowest + reach, to), lowest, to, twice), twice);
     }
   }
 }
 
 /// The order-th derivative of a polynomial.
 template <class L, int N>
-L DirectPackOrbit<L, N>::derivative_of(const Polynomial& of, std::size_t order, const L& at) {
+L DirectPackOrbit<L, N>::derivative_of(const Polynomial& p, std::size_t order, const L& x) {
   L value(0.0);
   for (std::size_t k = points; k-- > order;) {
     double factor = 1.0;
     for (std::size_t n = 0; n < order; ++n) factor = factor * double(k - n);
-    const L coefficient = order == 0 ? of[k] : L(factor) * of[k];
-    value = L(0.0) + coefficient + value * at;
+    const L coefficient = order == 0 ? p[k] : L(factor) * p[k];
+    value = L(0.0) + coefficient + value * x;
   }
   return value;
 }
 
 /// A zero of the order-th derivative between two places, by Newton's method from `at`.
 template <class L, int N>
-L DirectPackOrbit<L, N>::zero_of(const Polynomial& of, std::size_t order, L at, const L& from, const L& to,
+L DirectPackOrbit<L, N>::zero_of(const Polynomial& p, std::size_t order, L x, const L& from, const L& to,
                                  const Mask& where) {
   for (int n = 0; n < 3; ++n) {
-    const L value = derivative_of(of, order, at), change = derivative_of(of, order + 1, at);
+    const L value = derivative_of(p, order, x), change = derivative_of(p, order + 1, x);
     const L per_change = inverse_of(select<L>(where && !(change == L(0.0)), change, L(1e300)));
-    at = min(max(at - value * per_change, from), to);
+    x = min(max(x - value * per_change, from), to);
   }
-  return at;
+  return x;
 }
 
 /// The polynomial through a segment's values, in powers of the place from its middle: of the place from its start the
 /// powers would cancel at its end.
 template <class L, int N>
 auto DirectPackOrbit<L, N>::polynomial(const std::array<L, points>& values) const -> Polynomial {
-  Polynomial of;
+  Polynomial result;
   for (std::size_t k = 0; k < points; ++k) {
     L sum(0.0);
     for (std::size_t m = 0; m < points; ++m) sum = sum + L(rule_.power[k][m]) * values[m];
-    of[k] = sum;
+    result[k] = sum;
   }
-  return of;
+  return result;
 }
 
 /// A quantity inside a segment, `start` being its value at the reversal.
 template <class L, int N>
 L DirectPackOrbit<L, N>::inside(const std::array<L, max_nodes>& values, const L& start, std::size_t segment,
-                                const L& at) const {
+                                const L& x) const {
   std::array<L, points> through;
   through[0] = segment > 0 ? values[segment * stages - 1] : start;
   for (std::size_t m = 1; m < points; ++m) through[m] = values[segment * stages + m - 1];
-  return derivative_of(polynomial(through), 0, at);
+  return derivative_of(polynomial(through), 0, x);
 }
 
 /// Extremes at the zeros of their derivatives; and whether the velocity keeps its sign.
@@ -160,15 +161,15 @@ void DirectPackOrbit<L, N>::read_extremes(Cycle& cycle) {
     upward = upward && !(dips && min(omega_[node], omega_[node + 1]) < L(0.05) * highest);
   }
   decided_ = decided_ && upward;
-  for_each_zero(acceleration_, [&](std::size_t segment, const L& at, const Mask& where) {
-    highest = select<L>(where, max(highest, inside(omega_, zero, segment, at)), highest);
+  for_each_zero(acceleration_, [&](std::size_t segment, const L& x, const Mask& where) {
+    highest = select<L>(where, max(highest, inside(omega_, zero, segment, x)), highest);
   });
   cycle.velocity_peak = highest;
   if (settings_.current_peak) {
     const L start = -current_[last];
     for (std::size_t node = 0; node <= last; ++node) current_highest = max(current_highest, abs(current_[node]));
-    for_each_zero(current_slope_, [&](std::size_t segment, const L& at, const Mask& where) {
-      const L there = abs(inside(current_, start, segment, at));
+    for_each_zero(current_slope_, [&](std::size_t segment, const L& x, const Mask& where) {
+      const L there = abs(inside(current_, start, segment, x));
       current_highest = select<L>(where, max(current_highest, there), current_highest);
     });
     cycle.current_peak = current_highest;
@@ -176,8 +177,8 @@ void DirectPackOrbit<L, N>::read_extremes(Cycle& cycle) {
   if (settings_.exchanged_energy) {
     // The power that wings and springs exchange is the rate of what they store.
     L total(0.0), before = stored_in_wings(start_[0], zero);
-    for_each_zero(moment_, [&](std::size_t segment, const L& at, const Mask& where) {
-      const L here = stored_in_wings(inside(beta_, start_[0], segment, at), inside(omega_, zero, segment, at));
+    for_each_zero(moment_, [&](std::size_t segment, const L& x, const Mask& where) {
+      const L here = stored_in_wings(inside(beta_, start_[0], segment, x), inside(omega_, zero, segment, x));
       total = select<L>(where, total + abs(here - before), total);
       before = select<L>(where, here, before);
     });
@@ -202,8 +203,9 @@ L DirectPackOrbit<L, N>::apart(const Cycle& a, const Cycle& b) const {
   compare_sizes(a.electrical_work - a.aero_work, b.electrical_work - b.aero_work);
   compare_sizes(a.stroke, b.stroke);
   // A mean lift is off by a part of what lift is at most.
-  const L most = L(1e-3) * abs(aero_loads(vehicle_.wings, b.velocity_peak).lift) * inverse_of(vehicle_.drive_frequency);
-  compare(a.lift, b.lift, max(abs(b.lift), most));
+  const L max_lift =
+      L(1e-3) * abs(aero_loads(vehicle_.wings, b.velocity_peak).lift) * inverse_of(vehicle_.drive_frequency);
+  compare(a.lift, b.lift, max(abs(b.lift), max_lift));
   if (settings_.velocity_peak || settings_.lift_peak) {
     // Lift changes by no more than four times as much.
     const L scale = settings_.lift_peak ? L(0.25) * b.velocity_peak : b.velocity_peak;

@@ -13,9 +13,9 @@ void DirectPackOrbit<L, N>::set_mesh(int segments) {
   length_ = pi / double(segments);
   for (std::size_t s = 0; s < segments_; ++s) {
     for (std::size_t j = 0; j < stages; ++j) {
-      const double at = (double(s) + rule_.at[j + 1]) * length_;
-      phase_sine_[s * stages + j] = std::sin(at);
-      phase_cosine_[s * stages + j] = std::cos(at);
+      const double phase = (double(s) + rule_.phase[j + 1]) * length_;
+      phase_sine_[s * stages + j] = std::sin(phase);
+      phase_cosine_[s * stages + j] = std::cos(phase);
     }
   }
   length_in_time_ = L(length_) * per_drive_;
@@ -51,24 +51,24 @@ Motion<L> DirectPackOrbit<L, N>::motion_of(const L& beta, const L& omega, const 
   const L N_k_beta = vehicle_.wing_count * vehicle_.spring.stiffness * beta;
   const Branch<L> upward = {L(1.0), L(1.0), L(1.0), L(1.0)};
   return motion_on(vehicle_,
-                   instant_at<has_added_mass>(vehicle_, direct_kinematics<L>(), N_k_beta, omega, i, v, L(1.0), L(1.0)),
-                   i, v, upward);
+                   terms_at<has_added_mass>(vehicle_, direct_kinematics<L>(), N_k_beta, omega, i, v, L(1.0), L(1.0)), i,
+                   v, upward);
 }
 
 template <class L, int N>
 template <bool has_added_mass>
 void DirectPackOrbit<L, N>::accelerate(std::size_t node, Acceleration& out) const {
   const L v = voltage(node), beta = beta_[node], omega = omega_[node];
-  const auto at = [&](const L& speed) {
+  const auto acceleration_under = [&](const L& speed) {
     if constexpr (N == 3) {
       return motion_of<has_added_mass>(beta, speed, current_[node], v).crank_acceleration;
     } else {
       return motion_of<has_added_mass>(beta, speed, algebraic_current(vehicle_, v, speed), v).crank_acceleration;
     }
   };
-  out.value = at(omega);
+  out.value = acceleration_under(omega);
   const L by = L(1e-6) * speed_;
-  out.by_speed = (at(L(omega + by)) - out.value) * (L(1e6) * per_speed_);
+  out.by_speed = (acceleration_under(L(omega + by)) - out.value) * (L(1e6) * per_speed_);
   const AeroLoads<L> aero = aero_loads<has_added_mass>(vehicle_.wings, omega, L(1.0), L(1.0));
   out.per_inertia =
       inverse_of(L(vehicle_.motor.inertia + vehicle_.wing_count * vehicle_.wing_inertia + aero.added_inertia));
@@ -134,9 +134,9 @@ void DirectPackOrbit<L, N>::linearise(std::size_t segment, const std::array<L, s
   const L K = vehicle_.motor.torque_constant;
   const L stiffness = vehicle_.wing_count * vehicle_.spring.stiffness, T = length_in_time_;
   Linearised& to = linearised_[segment];
-  const auto integral = [&](std::size_t j, const Vector& of) {
+  const auto integral = [&](std::size_t j, const Vector& integrand) {
     L sum(0.0);
-    for (std::size_t l = 0; l < stages; ++l) sum = sum + L(rule_.a[j][l]) * of[l];
+    for (std::size_t l = 0; l < stages; ++l) sum = sum + L(rule_.a[j][l]) * integrand[l];
     return sum;
   };
   Vector value, by_speed, per_inertia, speed, voltage_left, voltage_by_phase;
@@ -260,11 +260,11 @@ void DirectPackOrbit<L, N>::close(const std::array<Row, std::size_t(N)>& end, st
   const std::size_t last = nodes() - 1;
   // Unknowns: angle, current, phase; equations: of angle, current, velocity.
   std::array<std::array<L, unknowns + 1>, unknowns> m;
-  const auto fill = [&](std::size_t row, const Row& of, const L& off) {
-    m[row][0] = of[1];
-    if constexpr (N == 3) m[row][1] = of[3];
-    m[row][unknowns - 1] = of[of_phase];
-    m[row][unknowns] = -(of[0] + off);
+  const auto fill = [&](std::size_t row, const Row& coefficients, const L& off) {
+    m[row][0] = coefficients[1];
+    if constexpr (N == 3) m[row][1] = coefficients[3];
+    m[row][unknowns - 1] = coefficients[of_phase];
+    m[row][unknowns] = -(coefficients[0] + off);
   };
   fill(0, end[0], L(beta_[last] + start_[0]));
   m[0][0] = m[0][0] + L(1.0);
@@ -301,30 +301,30 @@ L DirectPackOrbit<L, N>::correct(const std::array<L, columns>& move, const Mask&
   by[1] = L(0.0);
   if constexpr (N == 3) by[2] = move[3];
   for (std::size_t s = 0; s < segments_; ++s) {
-    Linearised& of = linearised_[s];
+    Linearised& linearised = linearised_[s];
     Vector omega;
     for (std::size_t j = 0; j < stages; ++j) {
-      L sum = of.omega[0][j];
-      for (std::size_t n = 0; n < std::size_t(N); ++n) sum = sum + of.omega[n + 1][j] * by[n];
-      omega[j] = sum + of.omega[of_phase][j] * move[of_phase];
+      L sum = linearised.omega[0][j];
+      for (std::size_t n = 0; n < std::size_t(N); ++n) sum = sum + linearised.omega[n + 1][j] * by[n];
+      omega[j] = sum + linearised.omega[of_phase][j] * move[of_phase];
       largest = max(largest, abs(omega[j]) * per_speed_);
     }
     for (std::size_t j = 0; j < stages; ++j) {
       L angle(0.0);
       for (std::size_t l = 0; l < stages; ++l) angle = angle + L(rule_.a[j][l]) * omega[l];
-      of.beta[j] = of.beta[j] + by[0] + length_in_time_ * angle;
+      linearised.beta[j] = linearised.beta[j] + by[0] + length_in_time_ * angle;
       if constexpr (N == 3) {
-        L i = of.current[j] + current_by_start_[j] * by[2];
-        i = i + of.current_by_phase[j] * move[of_phase];
+        L i = linearised.current[j] + current_by_start_[j] * by[2];
+        i = i + linearised.current_by_phase[j] * move[of_phase];
         for (std::size_t m = 0; m < stages; ++m) i = i + current_by_speed_[j][m] * omega[m];
-        of.current[j] = i;
+        linearised.current[j] = i;
         largest = max(largest, abs(i) * per_current_);
       }
     }
-    of.omega[0] = omega;
-    by[0] = of.beta[stages - 1];
+    linearised.omega[0] = omega;
+    by[0] = linearised.beta[stages - 1];
     by[1] = omega[stages - 1];
-    if constexpr (N == 3) by[2] = of.current[stages - 1];
+    if constexpr (N == 3) by[2] = linearised.current[stages - 1];
   }
   const L part = select<L>(where, min(L(1.0), L(longest_move) * inverse_of(max(largest, L(1e-9)))), L(0.0));
   phase_ = phase_ + part * move[of_phase];

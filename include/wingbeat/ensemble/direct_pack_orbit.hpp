@@ -98,10 +98,10 @@ class DirectPackOrbit {
   L stored_in_wings(const L& beta, const L& omega) const;
   template <class Visit>
   void for_each_zero(const std::array<L, max_nodes>& slopes, const Visit& visit) const;
-  static L derivative_of(const Polynomial& of, std::size_t order, const L& at);
-  static L zero_of(const Polynomial& of, std::size_t order, L at, const L& from, const L& to, const Mask& where);
+  static L derivative_of(const Polynomial& p, std::size_t order, const L& x);
+  static L zero_of(const Polynomial& p, std::size_t order, L x, const L& from, const L& to, const Mask& where);
   Polynomial polynomial(const std::array<L, points>& values) const;
-  L inside(const std::array<L, max_nodes>& values, const L& start, std::size_t segment, const L& at) const;
+  L inside(const std::array<L, max_nodes>& values, const L& start, std::size_t segment, const L& x) const;
   [[gnu::noinline, gnu::flatten]] L floquet_multiplier() const;
   [[gnu::noinline, gnu::flatten]] L apart(const Cycle& a, const Cycle& b) const;
 

@@ -12,7 +12,7 @@ inline constexpr std::size_t balance_speeds = 80, balance_samples = 24;
 /// A segment of length 1, its start and its stages being its points.
 struct DirectPackRule {
   static constexpr std::size_t stages = 7, points = stages + 1;
-  double at[points];                  ///< 0 and the stages, the last of them 1
+  double phase[points];               ///< 0 and the stages, the last of them 1
   double a[stages][stages];           ///< RadauCollocation::a; the last row holds the weights
   double place[points];               ///< the points from the segment's middle, -1 to 1
   double power[points][points];       ///< [k][m]: coefficient of place^k in the polynomial that is 1 at point m alone

@@ -20,9 +20,9 @@ inline constexpr std::array pack_integrals = {
 
 /// Where an integral stands among pack_integrals.
 constexpr std::size_t pack_integral(Integral which) {
-  std::size_t at = 0;
-  while (pack_integrals[at] != which) ++at;
-  return at;
+  std::size_t index = 0;
+  while (pack_integrals[index] != which) ++index;
+  return index;
 }
 
 /// The crank over half a cycle as a system for solve/: the independent variable u runs from -pi/2 to pi/2.
@@ -38,67 +38,70 @@ struct HalfCycle {
 
   const Vehicle<S>& vehicle;
   CrankGeometry<S> geometry;
-  S per_inductance;     ///< 1 / L_a [1/H]
-  S per_resistance;     ///< 1 / (R_a + R_i) [1/ohm]
-  S half;               ///< +1: crank angle u, stroke upward; -1: crank angle pi + u, stroke downward
-  bool has_every_law;   ///< whether added mass, coefficient tables or stops of the pitching count: see aero_loads()
-  S drop = S(0.0);      ///< N = 1: L_a di/dt [V], which a small inductance takes from the voltage
-  S pitching = S(1.0);  ///< as in Branch
+  S per_inductance;    ///< 1 / L_a [1/H]
+  S per_resistance;    ///< 1 / (R_a + R_i) [1/ohm]
+  S half;              ///< +1: crank angle u, stroke upward; -1: crank angle pi + u, stroke downward
+  bool has_every_law;  ///< whether added mass, coefficient tables or stops of the pitching count: see aero_loads()
+  S inductive_drop = S(0.0);  ///< N = 1: L_a di/dt [V], which a small inductance takes from the voltage
+  S pitching = S(1.0);        ///< as in Branch
 
   S current(const State& y) const {
     if constexpr (N == 2) {
       return y[1];
     } else {
-      return (vehicle.voltage - drop - vehicle.motor.torque_constant * y[0]) * per_resistance;
+      return (vehicle.voltage - inductive_drop - vehicle.motor.torque_constant * y[0]) * per_resistance;
     }
   }
 
-  Configuration<S> place(const S& u) const {
-    const SineCosine<S> of = sine_cosine_of_reduced(u);
-    return configuration_of(crank_kinematics(geometry, S(half * of.sine), S(half * of.cosine)));
+  Configuration<S> configuration(const S& u) const {
+    const SineCosine<S> of_u = sine_cosine_of_reduced(u);
+    return configuration_of(crank_kinematics(geometry, S(half * of_u.sine), S(half * of_u.cosine)));
   }
   Configuration<S> configuration_of(const CrankKinematics<S>& k) const { return {k, spring_moment(vehicle, k)}; }
 
   Branch<S> branch(const S& force) const { return {half, force, S(1.0), S(1.0), pitching}; }
 
   /// pitch_margin() of the wings [rad].
-  S pitch_margin_at(const Configuration<S>& place, const State& y) const {
-    return pitch_margin(vehicle.wings, S(half * place.kinematics.stroke_slope * y[0]));
+  S pitch_margin_at(const Configuration<S>& configuration, const State& y) const {
+    return pitch_margin(vehicle.wings, S(half * configuration.kinematics.stroke_slope * y[0]));
   }
 
-  [[gnu::always_inline]] Motion<S> motion(const Configuration<S>& place, const State& y, const S& force) const {
-    return has_every_law ? motion_by_every_law(place, y, force) : motion_of<false>(place, y, force);
+  [[gnu::always_inline]] Motion<S> motion(const Configuration<S>& configuration, const State& y, const S& force) const {
+    return has_every_law ? motion_by_every_law(configuration, y, force) : motion_of<false>(configuration, y, force);
   }
 
   /// The branch that holds is chosen on the spot.
-  [[gnu::always_inline]] Motion<S> motion_on_its_branch(const Configuration<S>& place, const State& y) const {
+  [[gnu::always_inline]] Motion<S> motion_on_its_branch(const Configuration<S>& configuration, const State& y) const {
     const S i = current(y);
     const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    const Instant<S> at = has_every_law ? instant_by_every_law(place, y, i, v_t, sign_of(pitch_margin_at(place, y)))
-                                        : instant_of<false>(place, y, i, v_t, S(1.0));
-    return motion_on(vehicle, at, i, v_t, branch(sign_of(at.force_switch)));
+    const IntermediateTerms<S> terms =
+        has_every_law ? terms_by_every_law(configuration, y, i, v_t, sign_of(pitch_margin_at(configuration, y)))
+                      : terms_of<false>(configuration, y, i, v_t, S(1.0));
+    return motion_on(vehicle, terms, i, v_t, branch(sign_of(terms.force_switch)));
   }
 
   template <bool every_law>
-  [[gnu::always_inline]] Instant<S> instant_of(const Configuration<S>& place, const State& y, const S& i, const S& v_t,
-                                               const S& on_pitching) const {
-    return instant_at<every_law>(vehicle, place.kinematics, place.spring_moment, y[0], i, v_t, half, S(1.0),
-                                 on_pitching);
+  [[gnu::always_inline]] IntermediateTerms<S> terms_of(const Configuration<S>& configuration, const State& y,
+                                                       const S& i, const S& v_t, const S& on_pitching) const {
+    return terms_at<every_law>(vehicle, configuration.kinematics, configuration.spring_moment, y[0], i, v_t, half,
+                               S(1.0), on_pitching);
   }
   template <bool every_law>
-  [[gnu::always_inline]] Motion<S> motion_of(const Configuration<S>& place, const State& y, const S& force) const {
+  [[gnu::always_inline]] Motion<S> motion_of(const Configuration<S>& configuration, const State& y,
+                                             const S& force) const {
     const S i = current(y);
     const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    return motion_on(vehicle, instant_of<every_law>(place, y, i, v_t, pitching), i, v_t, branch(force));
+    return motion_on(vehicle, terms_of<every_law>(configuration, y, i, v_t, pitching), i, v_t, branch(force));
   }
 
   // Out of the way of vehicles without: a call in the midst of an evaluation costs registers.
-  [[gnu::noinline]] Instant<S> instant_by_every_law(const Configuration<S>& place, const State& y, const S& i,
-                                                    const S& v_t, const S& on_pitching) const {
-    return instant_of<true>(place, y, i, v_t, on_pitching);
+  [[gnu::noinline]] IntermediateTerms<S> terms_by_every_law(const Configuration<S>& configuration, const State& y,
+                                                            const S& i, const S& v_t, const S& on_pitching) const {
+    return terms_of<true>(configuration, y, i, v_t, on_pitching);
   }
-  [[gnu::noinline]] Motion<S> motion_by_every_law(const Configuration<S>& place, const State& y, const S& force) const {
-    return motion_of<true>(place, y, force);
+  [[gnu::noinline]] Motion<S> motion_by_every_law(const Configuration<S>& configuration, const State& y,
+                                                  const S& force) const {
+    return motion_of<true>(configuration, y, force);
   }
 
   template <bool quadratures>
@@ -121,18 +124,19 @@ struct HalfCycle {
 // A cycle's code must stay within the processor's instruction cache: the right-hand side is one function.
 template <bool quadratures, bool every_law, class System>
 [[gnu::noinline, gnu::flatten]] void evaluate_of(const System& system,
-                                                 const Configuration<typename System::Real>& place,
+                                                 const Configuration<typename System::Real>& configuration,
                                                  const typename System::State& y, const typename System::Real& force,
                                                  solver::Rates<System>& out) {
-  out = system.template rates_of<quadratures>(system.template motion_of<every_law>(place, y, force), y, force);
+  out = system.template rates_of<quadratures>(system.template motion_of<every_law>(configuration, y, force), y, force);
 }
 
 template <bool quadratures, class System>
-[[gnu::always_inline]] inline void evaluate(const System& system, const Configuration<typename System::Real>& place,
+[[gnu::always_inline]] inline void evaluate(const System& system,
+                                            const Configuration<typename System::Real>& configuration,
                                             const typename System::State& y, const typename System::Real& force,
                                             solver::Rates<System>& out) {
-  if (system.has_every_law) return evaluate_of<quadratures, true>(system, place, y, force, out);
-  evaluate_of<quadratures, false>(system, place, y, force, out);
+  if (system.has_every_law) return evaluate_of<quadratures, true>(system, configuration, y, force, out);
+  evaluate_of<quadratures, false>(system, configuration, y, force, out);
 }
 
 }  // namespace wingbeat

@@ -3,8 +3,8 @@
 
 #include <type_traits>
 
-#include "wingbeat/ensemble/pack_bends.hpp"
 #include "wingbeat/ensemble/pack_blocks.hpp"
+#include "wingbeat/ensemble/pack_kinks.hpp"
 #include "wingbeat/ensemble/pack_lag.hpp"
 #include "wingbeat/ensemble/pack_mesh.hpp"
 #include "wingbeat/ensemble/pack_multiplier.hpp"
@@ -34,19 +34,20 @@ void solve_block(const EnsembleMember* const* members, int count, const PackSett
     const Vehicle<double>& first = member(0).vehicle;
     LaneTables<L>& tables = vehicle.wings.coefficients.table;
     tables.from_tables = bool(first.wings.coefficients.table);
-    tables.bends = tables.from_tables || has_pitch_stop(first.wings);
-    if (tables.bends) tables.bend = gather([](const EnsembleMember& m) { return bend_of_coefficients(m.vehicle); });
+    tables.kinks = tables.from_tables || has_pitch_stop(first.wings);
+    if (tables.kinks) tables.kink = gather([](const EnsembleMember& m) { return kink_of_coefficients(m.vehicle); });
     if (tables.from_tables) {
       const auto table_of = [](const EnsembleMember& m) { return m.vehicle.wings.coefficients.table->lookup(); };
-      for (int lane = 0; lane < L::lanes; ++lane) tables.of[lane] = table_of(member(lane));
+      for (int lane = 0; lane < L::lanes; ++lane) tables.lookup[lane] = table_of(member(lane));
       tables.front = gather([&](const EnsembleMember& m) { return table_of(m).front; });
       tables.steps_per_angle = gather([&](const EnsembleMember& m) { return table_of(m).steps_per_angle; });
       tables.last_step = gather([&](const EnsembleMember& m) { return double(table_of(m).steps - 1); });
     }
     PackOrbit<L, N> orbit(vehicle, settings);
     if (settings.approach == PackApproach::resume) {
-      orbit.visit_start([&](L& to, const auto& of) {
-        for (int lane = 0; lane < L::lanes; ++lane) numbers[lane] = of(results[lane < count ? lane : count - 1]->start);
+      orbit.visit_start([&](L& to, const auto& read) {
+        for (int lane = 0; lane < L::lanes; ++lane)
+          numbers[lane] = read(results[lane < count ? lane : count - 1]->start);
         to = L::load(numbers);
       });
     }

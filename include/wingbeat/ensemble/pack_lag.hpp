@@ -19,10 +19,10 @@ void PackOrbit<L, N>::build_mesh_with_layers(int half) {
   std::array<L, 2 * max_force_switches> place;
   place.fill(L(quarter));
   for (std::size_t n = 0; n < max_force_switches; ++n) {
-    const L next = n + 1 < max_force_switches ? s.at[n + 1] : L(quarter);
-    place[n] = select<L>(relaxes, place[n], s.at[n]);
-    place[2 * n] = select<L>(relaxes, s.at[n], place[2 * n]);
-    place[2 * n + 1] = select<L>(relaxes, min(s.at[n] + width, L(0.5) * (s.at[n] + next)), place[2 * n + 1]);
+    const L next = n + 1 < max_force_switches ? s.angle[n + 1] : L(quarter);
+    place[n] = select<L>(relaxes, place[n], s.angle[n]);
+    place[2 * n] = select<L>(relaxes, s.angle[n], place[2 * n]);
+    place[2 * n + 1] = select<L>(relaxes, min(s.angle[n] + width, L(0.5) * (s.angle[n] + next)), place[2 * n + 1]);
   }
   const L count = select<L>(relaxes, L(2.0) * s.count, s.count);
   unresolved_ = unresolved_ || count > L(double(segments_ - 1));
@@ -36,7 +36,7 @@ void PackOrbit<L, N>::build_mesh_with_layers(int half) {
 /// The inductance's voltage at the nodes from the trajectory of the current that it leaves, twice: an iteration gains
 /// the ratio of its time constant to that of the trajectory.
 template <class L, int N>
-void PackOrbit<L, N>::lag_current() {
+void PackOrbit<L, N>::correct_quasi_steady_current() {
   if constexpr (N == 1) {
     const std::size_t intervals = std::size_t(rule_.intervals), nodes = first_node(2, 0);
     const L inductance = vehicle_.motor.armature_inductance;
@@ -50,14 +50,15 @@ void PackOrbit<L, N>::lag_current() {
           const L inductance_per_h = inductance * inverse_of(max(L(mesh.u[s + 1] - mesh.u[s]), L(1e-12)));
           std::array<L, nodes_per_segment> current;
           for (std::size_t j = 0; j <= intervals; ++j) {
-            current[j] = algebraic_current(vehicle_, L(vehicle_.voltage - drop_[base + j]), trajectory_[base + j][0]);
+            current[j] =
+                algebraic_current(vehicle_, L(vehicle_.voltage - inductive_drop_[base + j]), trajectory_[base + j][0]);
           }
           for (std::size_t m = 0; m <= intervals; ++m) {
             L slope(0.0);
             for (std::size_t j = 0; j <= intervals; ++j) slope = slope + L(rule_.slope[m][j]) * current[j];
-            const L drop = inductance_per_h * trajectory_[base + m][0] * slope;
-            change = change + abs(drop - drop_[base + m]);
-            drop_[base + m] = drop;
+            const L inductive_drop = inductance_per_h * trajectory_[base + m][0] * slope;
+            change = change + abs(inductive_drop - inductive_drop_[base + m]);
+            inductive_drop_[base + m] = inductive_drop;
           }
         }
       }
@@ -73,7 +74,7 @@ template <class L, int N>
 auto PackOrbit<L, N>::relaxation(System system, std::size_t base, const L& force) const -> solver::Rates<System> {
   solver::Rates<System> after, before;
   evaluate<true>(system, configuration_of(base), trajectory_[base], force, after);
-  system.drop = drop_[base - 1];
+  system.inductive_drop = inductive_drop_[base - 1];
   evaluate<true>(system, configuration_of(base), trajectory_[base], force, before);
   const L angle = vehicle_.motor.armature_inductance * trajectory_[base][0] * inverse_of(circuit_resistance(vehicle_));
   for (std::size_t n = 0; n < N; ++n) after.dy[n] = angle * (before.dy[n] - after.dy[n]);
@@ -109,7 +110,7 @@ void PackOrbit<L, N>::lag_with(System system, std::size_t node, const L& by, con
     State moved = y;
     moved[0] = rates == &below ? y[0] - by : y[0] + by;
     for (int repeat = 0; repeat < 2; ++repeat) {
-      system.drop = drop_[node] - per_acceleration * (rates->dy[0] * moved[0] - acceleration);
+      system.inductive_drop = inductive_drop_[node] - per_acceleration * (rates->dy[0] * moved[0] - acceleration);
       evaluate<false>(system, configuration_of(node), moved, force, *rates);
     }
   }

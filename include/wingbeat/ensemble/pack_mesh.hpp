@@ -11,7 +11,7 @@ namespace wingbeat {
 template <class L, int N>
 L PackOrbit<L, N>::find_switches(ForceSwitches<L>& known, const L* u, const L* force, int count) {
   ForceSwitches<L> found;
-  found.at.fill(L(quarter));
+  found.angle.fill(L(quarter));
   found.count = L(0.0);
   found.first_sign = sign_of(force[0]);
   for (int k = 0; k < count; ++k) {
@@ -46,15 +46,16 @@ L PackOrbit<L, N>::find_switches(ForceSwitches<L>& known, const L* u, const L* f
       t = t - value * inverse_of(slope);
     }
     t = select<L>(t >= L(0.0) && t <= L(1.0), t, min(max(straight, L(0.0)), L(1.0)));
-    const L at = u[k] + h * t;
+    const L root = u[k] + h * t;
     for (int n = 0; n < max_force_switches; ++n) {
-      found.at[std::size_t(n)] = select<L>(changes && found.count == L(double(n)), at, found.at[std::size_t(n)]);
+      found.angle[std::size_t(n)] =
+          select<L>(changes && found.count == L(double(n)), root, found.angle[std::size_t(n)]);
     }
     found.count = select<L>(changes, found.count + L(1.0), found.count);
   }
   unresolved_ = unresolved_ || found.count > L(double(max_force_switches));
   L offset(0.0);
-  for (std::size_t n = 0; n < max_force_switches; ++n) offset = max(offset, abs(found.at[n] - known.at[n]));
+  for (std::size_t n = 0; n < max_force_switches; ++n) offset = max(offset, abs(found.angle[n] - known.angle[n]));
   known = found;
   return offset;
 }
@@ -62,32 +63,32 @@ L PackOrbit<L, N>::find_switches(ForceSwitches<L>& known, const L* u, const L* f
 /// Segments between places, growing, of which lanes have `count`: of equal length between two of them, their number in
 /// proportion to the distance. pass(m, n, where) is called for segment m where it lies beyond place n.
 template <class L, int N>
-template <std::size_t most, class Pass>
-void PackOrbit<L, N>::lay_segments(const std::array<L, most>& place, const L& count, HalfMesh<L>& mesh,
+template <std::size_t max_ends, class Pass>
+void PackOrbit<L, N>::lay_segments(const std::array<L, max_ends>& place, const L& count, HalfMesh<L>& mesh,
                                    const Pass& pass) const {
   const int steps = segments_;
   const L all(steps);
-  std::array<L, most + 2> node, at, per_step;
+  std::array<L, max_ends + 2> node, position, per_step;
   node[0] = L(0.0);
-  at[0] = L(-quarter);
-  for (std::size_t n = 0; n < most; ++n) {
+  position[0] = L(-quarter);
+  for (std::size_t n = 0; n < max_ends; ++n) {
     const Mask used = count > L(double(n));
     const L wanted = nearest_whole(L((place[n] + L(quarter)) * L(steps / pi)));
     const L within = min(max(wanted, node[n] + L(1.0)), all - (count - L(double(n))));
     node[n + 1] = select<L>(used, within, all);
-    at[n + 1] = select<L>(used, place[n], L(quarter));
+    position[n + 1] = select<L>(used, place[n], L(quarter));
   }
-  node[most + 1] = all;
-  at[most + 1] = L(quarter);
-  for (std::size_t n = 0; n <= most; ++n) {
-    per_step[n] = (at[n + 1] - at[n]) * inverse_of(max(L(node[n + 1] - node[n]), L(0.5)));
+  node[max_ends + 1] = all;
+  position[max_ends + 1] = L(quarter);
+  for (std::size_t n = 0; n <= max_ends; ++n) {
+    per_step[n] = (position[n + 1] - position[n]) * inverse_of(max(L(node[n + 1] - node[n]), L(0.5)));
   }
   for (int m = 0; m < steps; ++m) {
     const L here(m);
-    L u = at[0] + per_step[0] * here;
-    for (std::size_t n = 1; n <= most; ++n) {
+    L u = position[0] + per_step[0] * here;
+    for (std::size_t n = 1; n <= max_ends; ++n) {
       const Mask beyond = here >= node[n] && node[n] < all;
-      u = select<L>(beyond, at[n] + per_step[n] * (here - node[n]), u);
+      u = select<L>(beyond, position[n] + per_step[n] * (here - node[n]), u);
       pass(std::size_t(m), n - 1, beyond);
     }
     mesh.u[std::size_t(m)] = u;
@@ -98,12 +99,12 @@ void PackOrbit<L, N>::lay_segments(const std::array<L, most>& place, const L& co
 /// The segments of half an iterate, which end at the sign changes of the rod force.
 template <class L, int N>
 void PackOrbit<L, N>::build_mesh(int half) {
-  if (bends_) return build_mesh_with_bends(half);
+  if (kinks_) return build_mesh_with_kinks(half);
   if constexpr (N == 2) return build_mesh_with_layers(half);
   const ForceSwitches<L>& s = switches_[std::size_t(half)];
   HalfMesh<L>& mesh = mesh_[std::size_t(half)];
   mesh.force.fill(s.first_sign);
-  lay_segments(s.at, s.count, mesh, [&](std::size_t m, std::size_t, const Mask& beyond) {
+  lay_segments(s.angle, s.count, mesh, [&](std::size_t m, std::size_t, const Mask& beyond) {
     mesh.force[m] = select<L>(beyond, -mesh.force[m], mesh.force[m]);
   });
 }

@@ -70,20 +70,20 @@ void PackOrbit<L, N>::close_iterate(State& off) const {
 /// lag of the current.
 template <class L, int N>
 auto PackOrbit<L, N>::jacobian_at_node(System system, std::size_t node, const L& force) const -> Matrix {
-  const Configuration<L>& place = configuration_of(node);
+  const Configuration<L>& configuration = configuration_of(node);
   solver::Rates<System> below, above;
   Matrix jacobian;
   if (!lags_) {
     linearise(system, node, force, below, jacobian);
     return jacobian;
   }
-  system.drop = drop_[node];
+  system.inductive_drop = inductive_drop_[node];
   const L by = L(1e-4) * trajectory_[node][0];
   State moved = trajectory_[node];
   moved[0] = moved[0] - by;
-  evaluate<false>(system, place, moved, force, below);
+  evaluate<false>(system, configuration, moved, force, below);
   moved[0] = trajectory_[node][0] + by;
-  evaluate<false>(system, place, moved, force, above);
+  evaluate<false>(system, configuration, moved, force, above);
   lag_with(system, node, by, force, below, above);
   for (auto& row : jacobian) row.fill(L(0.0));
   jacobian[0][0] = (above.dy[0] - below.dy[0]) * L(0.5) * inverse_of(by);
@@ -122,7 +122,7 @@ L PackOrbit<L, N>::floquet_multiplier() {
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       const std::size_t base = first_node(half, s);
       const L h = mesh.u[s + 1] - mesh.u[s];
-      if (bends_) system.pitching = mesh.pitching[s];
+      if (kinks_) system.pitching = mesh.pitching[s];
       Matrix end_before = jacobian[intervals];
       for (std::size_t m = 0; m <= intervals; ++m) {
         jacobian[m] = jacobian_at_node(system, base + m, mesh.force[s]);

@@ -31,7 +31,7 @@ void PackOrbit<L, N>::place_nodes() {
       }
       for (std::size_t m = 0; m <= std::size_t(rule_.intervals); ++m) {
         const double x = rule_.node[m];
-        if (m > 0 || s == 0) find_node(system, u, h, L(x), places_[base + m]);
+        if (m > 0 || s == 0) find_node(system, u, h, L(x), configurations_[base + m]);
         const L moved = (shift + L(x) * stretched) * per_h_before;
         for (std::size_t n = 0; n < N; ++n) {
           trajectory_[base + m][n] = from.y[n] + L(x) * (c1[n] + L(x) * (c2[n] + L(x) * c3[n])) +
@@ -142,7 +142,7 @@ void PackOrbit<L, N>::correct(State end) {
   close_iterate(by);
   L sum(0.0);
   slowest_ = trajectory_[0][0];
-  moved_most_ = L(0.0);
+  max_move_ = L(0.0);
   const L per_speed = inverse_of(slowest_), per_current = inverse_of(current_scale_);
   for (std::size_t base = 0; base < nodes; base += per_segment) {
     for (std::size_t m = 0; m < per_segment; ++m) {
@@ -159,7 +159,7 @@ void PackOrbit<L, N>::correct(State end) {
         }
       }
       sum = sum + abs(by[0]) * per_speed;
-      moved_most_ = max(moved_most_, abs(by[0]));
+      max_move_ = max(max_move_, abs(by[0]));
       if constexpr (N == 2) sum = sum + abs(by[1]) * per_current;
       for (std::size_t n = 0; n < N; ++n) {
         trajectory_[node][n] = select<L>(settled_, trajectory_[node][n], trajectory_[node][n] + by[n]);
@@ -190,9 +190,9 @@ void PackOrbit<L, N>::newton_iteration() {
   State end;
   end.fill(L(0.0));
   correction_[0] = end;
-  L overlooked(0.0), highest(0.0), bend_depth(0.0), lift_magnitude(0.0);
+  L overlooked(0.0), highest(0.0), kink_depth(0.0), lift_magnitude(0.0);
   typename System::Quadrature integrands_before;
-  if (lags_) lag_current();
+  if (lags_) correct_quasi_steady_current();
   if constexpr (last) {
     integrals_.fill(L(0.0));
     high_.fill(L(0.0));
@@ -206,10 +206,10 @@ void PackOrbit<L, N>::newton_iteration() {
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       const std::size_t base = first_node(half, s);
       const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s];
-      if (bends_) system.pitching = mesh.pitching[s];
+      if (kinks_) system.pitching = mesh.pitching[s];
       for (std::size_t m = 0; m <= intervals; ++m) {
-        if (lags_) system.drop = drop_[base + m];
-        if (bends_) margin_[base + m] = system.pitch_margin_at(configuration_of(base + m), trajectory_[base + m]);
+        if (lags_) system.inductive_drop = inductive_drop_[base + m];
+        if (kinks_) margin_[base + m] = system.pitch_margin_at(configuration_of(base + m), trajectory_[base + m]);
         solver::Rates<System>& rates = at_node[last ? m : 0];
         if constexpr (last) {
           visit_node(system, base + m, sign, rates);
@@ -245,10 +245,10 @@ void PackOrbit<L, N>::newton_iteration() {
         for (std::size_t n = 0; n < N; ++n) jump[n] = trajectory_[base - 1][n] - trajectory_[base][n];
         if (s == 0) continue;
         const Mask forces = mesh.force[s - 1] * sign < L(0.0);
-        const Mask switches = bends_ ? forces || mesh.pitching[s - 1] * mesh.pitching[s] < L(0.0) : forces;
+        const Mask switches = kinks_ ? forces || mesh.pitching[s - 1] * mesh.pitching[s] < L(0.0) : forces;
         if (!any<L>(switches)) continue;
         const auto switch_at = [&](std::size_t node) {
-          return bends_ ? select<L>(forces, force_[node], margin_[node]) : force_[node];
+          return kinks_ ? select<L>(forces, force_[node], margin_[node]) : force_[node];
         };
         L slope(0.0);
         for (std::size_t j = 0; j <= intervals; ++j)
@@ -322,22 +322,22 @@ void PackOrbit<L, N>::newton_iteration() {
         switch_error_ = max(switch_error_, select<L>(same, L(0.0), misplaced(offset)));
       };
       compare(switches_[std::size_t(half)]);
-      if (bends_) {
+      if (kinks_) {
         for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
           const std::size_t base = first_node(half, s);
           force[2 * s] = margin_[base];
           force[2 * s + 1] = margin_[base + intervals / 2];
         }
         force[2 * std::size_t(segments_)] = margin_[first_node(half, std::size_t(segments_)) - 1];
-        compare(bend_switches_[std::size_t(half)]);
-        bend_depth = max(bend_depth, overlooked_bend(half));
+        compare(kink_switches_[std::size_t(half)]);
+        kink_depth = max(kink_depth, overlooked_kink(half));
       }
     }
   }
   if constexpr (first) keep_settled(monodromy, monodromy_);
   correct(end);
   if constexpr (last) {
-    overlooked_ = max(L(overlooked * inverse_of(max(highest, L(1e-300)))), bend_depth);
+    overlooked_ = max(L(overlooked * inverse_of(max(highest, L(1e-300)))), kink_depth);
     // As error_scale(): a mean lift below a thousandth of the lift itself need not be accurate beside itself.
     const L lift = max(abs(integrals_[pack_integral(Integral::lift)]), max(L(1e-3) * lift_magnitude, L(1e-300)));
     lift_opposed_ = max(L(lift_magnitude * inverse_of(lift) - L(1.0)), L(0.0));
@@ -384,7 +384,7 @@ void PackOrbit<L, N>::follow_switches() {
         for (std::size_t n = 0; n < N; ++n) {
           trajectory_[base + m][n] = trajectory_[base + m][n] + moved * rates_[base + m][n];
         }
-        if (m > 0 || s == 0) find_node(system, u, h, x, places_[base + m]);
+        if (m > 0 || s == 0) find_node(system, u, h, x, configurations_[base + m]);
       }
     }
   }
@@ -408,7 +408,7 @@ void PackOrbit<L, N>::add_tails(const NodeRates& rates, std::size_t base, const 
 
 /// A quantity but the rod force, with the motion there.
 template <class L, int N>
-Observable<L> PackOrbit<L, N>::observable(const System& system, const Configuration<L>& place, const State& y,
+Observable<L> PackOrbit<L, N>::observable(const System& system, const Configuration<L>& configuration, const State& y,
                                           const Motion<L>& m, const State& dy, Quantity quantity) const {
   switch (quantity) {
     case Quantity::velocity:
@@ -419,7 +419,7 @@ Observable<L> PackOrbit<L, N>::observable(const System& system, const Configurat
       if constexpr (N == 2) {
         return {y[1], dy[1]};
       } else {
-        return {m.current, lags_ ? system.drop * per_inductance_ * inverse_of(y[0])
+        return {m.current, lags_ ? system.inductive_drop * per_inductance_ * inverse_of(y[0])
                                  : -(vehicle_.motor.torque_constant * dy[0] * per_resistance_)};
       }
     default: {
@@ -428,7 +428,7 @@ Observable<L> PackOrbit<L, N>::observable(const System& system, const Configurat
       // At the dead centres the slope is zero but for rounding; its sign is that of the moment there.
       const L rising = sign_of(L(system.half * m.stored_moment));
       const L steepness = max(abs(L(m.stored_moment * m.kinematics.stroke_slope)), L(1e-30));
-      return {kinetic + compliance_ * square(place.spring_moment), rising * steepness};
+      return {kinetic + compliance_ * square(configuration.spring_moment), rising * steepness};
     }
   }
 }
@@ -437,26 +437,26 @@ Observable<L> PackOrbit<L, N>::observable(const System& system, const Configurat
 template <class L, int N>
 void PackOrbit<L, N>::linearise(const System& system, std::size_t node, const L& force, solver::Rates<System>& rates,
                                 Matrix& jacobian) const {
-  const Configuration<L>& place = configuration_of(node);
+  const Configuration<L>& configuration = configuration_of(node);
   const State& y = trajectory_[node];
-  evaluate<false>(system, place, y, force, rates);
+  evaluate<false>(system, configuration, y, force, rates);
   if (N == 1 || adds_mass_) {
-    jacobian = jacobian_at(system, place, y, rates.dy, force);
+    jacobian = jacobian_at(system, configuration, y, rates.dy, force);
     return;
   }
   solver::Rates<System> beside;
   State moved = y;
   const L by = L(1e-7) * y[0];
   moved[0] = moved[0] + by;
-  evaluate<false>(system, place, moved, force, beside);
-  const CrankKinematics<L>& k = place.kinematics;
-  const L inertia_g = vehicle_.motor.inertia * k.wing_lever + vehicle_.wing_count * vehicle_.wing_inertia *
-                                                                  k.stroke_slope *
-                                                                  (k.crank_lever + force * vehicle_.friction.radius);
+  evaluate<false>(system, configuration, moved, force, beside);
+  const CrankKinematics<L>& k = configuration.kinematics;
+  const L inertia_g =
+      vehicle_.motor.inertia * k.wing_jacobian + vehicle_.wing_count * vehicle_.wing_inertia * k.stroke_slope *
+                                                     (k.crank_jacobian + force * vehicle_.friction.radius);
   const L both = inverse_of(L(inertia_g * y[0])), per_omega = both * inertia_g, per_move = L(1e7) * per_omega;
   for (std::size_t row = 0; row < N; ++row) jacobian[row][0] = (beside.dy[row] - rates.dy[row]) * per_move;
   if constexpr (N == 2) {
-    jacobian[0][1] = vehicle_.motor.torque_constant * k.wing_lever * both;
+    jacobian[0][1] = vehicle_.motor.torque_constant * k.wing_jacobian * both;
     jacobian[1][1] = -(circuit_resistance(vehicle_) * per_inductance_ * per_omega);
   }
 }
@@ -466,13 +466,13 @@ template <class L, int N>
 template <bool every_law>
 void PackOrbit<L, N>::visit_node_of(const System& system, std::size_t node, const L& force,
                                     solver::Rates<System>& rates) {
-  const Configuration<L>& place = configuration_of(node);
+  const Configuration<L>& configuration = configuration_of(node);
   const State& y = trajectory_[node];
-  const Motion<L> motion = system.template motion_of<every_law>(place, y, force);
+  const Motion<L> motion = system.template motion_of<every_law>(configuration, y, force);
   rates = system.template rates_of<true>(motion, y, force);
   const auto keep_of = [&](Quantity q) {
     if (wanted_[std::size_t(q)]) {
-      observables_[std::size_t(q)][node] = observable(system, place, y, motion, rates.dy, q);
+      observables_[std::size_t(q)][node] = observable(system, configuration, y, motion, rates.dy, q);
     }
   };
   keep_of(Quantity::velocity);

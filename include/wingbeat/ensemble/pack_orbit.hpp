@@ -9,7 +9,7 @@
 //
 // pack_start.hpp holds the way to the first trajectory, pack_mesh.hpp the segments, pack_newton.hpp Newton's method,
 // pack_segment.hpp its step on a stiff segment, pack_lag.hpp the current behind an inductance, pack_peaks.hpp the
-// search for extremes, pack_bends.hpp coefficients with kinks, pack_multiplier.hpp the return map's derivative.
+// search for extremes, pack_kinks.hpp coefficients with kinks, pack_multiplier.hpp the return map's derivative.
 #pragma once
 
 #include <array>
@@ -35,7 +35,7 @@ inline constexpr int max_energy_extremes = 5;  ///< of the energy stored in wing
 /// Where the rod force changes sign within half an iterate.
 template <class L>
 struct ForceSwitches {
-  std::array<L, max_force_switches> at;  ///< [rad], growing; pi/2 beyond the count
+  std::array<L, max_force_switches> angle;  ///< [rad], growing; pi/2 beyond the count
   L count;
   L first_sign;  ///< sign of the rod force at the start
 };
@@ -70,7 +70,7 @@ template <class L, int N>
 struct SegmentTrajectory {
   L half, u, length, force, pitching;
   std::array<std::array<L, N>, solver::CollocationRule::max_points + 1> legendre;  ///< coefficients of the state
-  std::array<L, solver::CollocationRule::max_points + 1> drop;                     ///< and of HalfCycle::drop
+  std::array<L, solver::CollocationRule::max_points + 1> inductive_drop;           ///< and of HalfCycle::inductive_drop
 };
 
 template <class L, int N>
@@ -98,9 +98,9 @@ class PackOrbit {
     geometry_ = geometry_of(vehicle.transmission.slider_crank);
     const L stiffness = vehicle.wing_count * vehicle.spring.stiffness;
     compliance_ = select<L>(stiffness > L(0.0), L(0.5) / max(stiffness, L(1e-300)), L(0.0));
-    bends_ = bends_on_lanes(vehicle.wings);
+    kinks_ = kinks_on_lanes(vehicle.wings);
     adds_mass_ = any<L>(vehicle.wings.added_inertia > L(0.0));
-    every_law_ = bends_ || adds_mass_;
+    every_law_ = kinks_ || adds_mass_;
     in_one_piece_ = settings.in_one_piece;
     lags_ = N == 1 && settings.current == PackCurrent::lagging;
     if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
@@ -121,10 +121,10 @@ class PackOrbit {
   template <class Visit>
   void visit_start(const Visit& visit) {
     for (std::size_t n = 0; n < N; ++n) visit(y_[n], [n](auto& start) -> double& { return start.state[n]; });
-    for (std::size_t list = 0; list < (bends_ ? 4 : 2); ++list) {
-      ForceSwitches<L>& s = list < 2 ? switches_[list] : bend_switches_[list - 2];
+    for (std::size_t list = 0; list < (kinks_ ? 4 : 2); ++list) {
+      ForceSwitches<L>& s = list < 2 ? switches_[list] : kink_switches_[list - 2];
       for (std::size_t n = 0; n < max_force_switches; ++n) {
-        visit(s.at[n], [list, n](auto& start) -> double& { return start.switch_at[list][n]; });
+        visit(s.angle[n], [list, n](auto& start) -> double& { return start.switch_at[list][n]; });
       }
       visit(s.count, [list](auto& start) -> double& { return start.switch_count[list]; });
       visit(s.first_sign, [list](auto& start) -> double& { return start.first_sign[list]; });
@@ -146,18 +146,18 @@ class PackOrbit {
   [[gnu::noinline]] void replace_stiff(const System& system, const Configuration<L>* over, const L& u, const L& h,
                                        const State& y, const Matrix& jacobian, const Mask& stiff, State& end,
                                        L& force_in_middle, L& force_at_end) const;
-  [[gnu::noinline]] Matrix jacobian_on_its_branch(const System& system, const Configuration<L>& place, const State& y,
-                                                  const State& rates) const;
+  [[gnu::noinline]] Matrix jacobian_on_its_branch(const System& system, const Configuration<L>& configuration,
+                                                  const State& y, const State& rates) const;
   template <bool last>
   [[gnu::noinline, gnu::flatten]] void coarse_iterate();
   [[gnu::noinline, gnu::flatten]] L find_switches(ForceSwitches<L>& known, const L* u, const L* force, int count);
   [[gnu::noinline, gnu::flatten]] void build_mesh(int half);
-  template <std::size_t most, class Pass>
-  void lay_segments(const std::array<L, most>& place, const L& count, HalfMesh<L>& mesh, const Pass& pass) const;
-  [[gnu::noinline]] void build_mesh_with_bends(int half);
+  template <std::size_t max_ends, class Pass>
+  void lay_segments(const std::array<L, max_ends>& place, const L& count, HalfMesh<L>& mesh, const Pass& pass) const;
+  [[gnu::noinline]] void build_mesh_with_kinks(int half);
   [[gnu::noinline]] void build_mesh_with_layers(int half);
-  [[gnu::noinline]] L overlooked_bend(int half) const;
-  [[gnu::noinline]] L error_of_peak_on_bend(const L& peak) const;
+  [[gnu::noinline]] L overlooked_kink(int half) const;
+  [[gnu::noinline]] L error_of_peak_on_kink(const L& peak) const;
   [[gnu::noinline]] void march();
   [[gnu::noinline, gnu::flatten]] void place_nodes();
   /// The first one takes the derivatives along the trajectory, the last one integrals and observables.
@@ -190,7 +190,7 @@ class PackOrbit {
   template <int known_intervals, bool renews>
   [[gnu::noinline, gnu::flatten]] void propose_in_one_piece(std::size_t base, const L& h, State& end, Matrix& whole);
   [[gnu::noinline, gnu::flatten]] void correct(State end);
-  [[gnu::noinline, gnu::flatten]] void lag_current();
+  [[gnu::noinline, gnu::flatten]] void correct_quasi_steady_current();
   [[gnu::noinline, gnu::flatten]] solver::Rates<System> relaxation(System system, std::size_t base,
                                                                    const L& force) const;
   L lag_left_out() const;
@@ -206,7 +206,7 @@ class PackOrbit {
                                    Matrix& jacobian) const;
   using NodeRates = std::array<solver::Rates<System>, nodes_per_segment>;  ///< at a segment's nodes
   [[gnu::noinline, gnu::flatten]] void add_tails(const NodeRates& rates, std::size_t base, const L& h);
-  [[gnu::always_inline]] inline Observable<L> observable(const System& system, const Configuration<L>& place,
+  [[gnu::always_inline]] inline Observable<L> observable(const System& system, const Configuration<L>& configuration,
                                                          const State& y, const Motion<L>& m, const State& dy,
                                                          Quantity quantity) const;
   [[gnu::noinline, gnu::flatten]] void follow(const L& segment, SegmentTrajectory<L, N>& trajectory) const;
@@ -229,13 +229,13 @@ class PackOrbit {
                                   solver::Rates<System>& below, solver::Rates<System>& above) const;
   template <class RatesAt>
   Matrix derivatives(const State& y, const State& rates, const RatesAt& rates_at) const;
-  [[gnu::noinline]] Matrix jacobian_at(const System& system, const Configuration<L>& place, const State& y,
+  [[gnu::noinline]] Matrix jacobian_at(const System& system, const Configuration<L>& configuration, const State& y,
                                        const State& rates, const L& force) const;
   [[gnu::noinline]] Matrix jacobian_at_node(System system, std::size_t node, const L& force) const;
   static Mask is_stiff(const Matrix& jacobian, const L& h);
-  [[gnu::noinline, gnu::flatten]] static void find_rates(const System& system, const Configuration<L>& place,
+  [[gnu::noinline, gnu::flatten]] static void find_rates(const System& system, const Configuration<L>& configuration,
                                                          const State& y, State& rates, L& force) {
-    const Motion<L> m = system.motion_on_its_branch(place, y);
+    const Motion<L> m = system.motion_on_its_branch(configuration, y);
     force = m.force_switch;
     rates = system.template rates_of<false>(m, y, L(1.0)).dy;
   }
@@ -264,18 +264,19 @@ class PackOrbit {
   }
 
   [[gnu::noinline, gnu::flatten]] static void find_configuration(const System& system, const L& u,
-                                                                 Configuration<L>& place) {
-    place = system.place(u);
+                                                                 Configuration<L>& configuration) {
+    configuration = system.configuration(u);
   }
   // One function for all who place nodes: a lane that stays has the bits of one whose neighbours move.
   [[gnu::noinline, gnu::flatten]] static void find_node(const System& system, const L& u, const L& h, const L& x,
-                                                        Configuration<L>& place) {
-    place = system.place(u + x * h);
+                                                        Configuration<L>& configuration) {
+    configuration = system.configuration(u + x * h);
   }
   /// Segments that meet share the place of their common node.
   const Configuration<L>& configuration_of(std::size_t node) const {
-    return places_[node > 0 && node % std::size_t(rule_.intervals + 1) == 0 && node != first_node(1, 0) ? node - 1
-                                                                                                        : node];
+    return configurations_[node > 0 && node % std::size_t(rule_.intervals + 1) == 0 && node != first_node(1, 0)
+                               ? node - 1
+                               : node];
   }
   std::size_t first_node(int half, std::size_t segment) const {
     return (std::size_t(half * segments_) + segment) * std::size_t(rule_.intervals + 1);
@@ -305,7 +306,7 @@ class PackOrbit {
   };
   std::array<Subinterval, 2 * max_half_segments + 1> subintervals_;
   // At the nodes, segment after segment; where segments meet there is one for either.
-  std::array<Configuration<L>, max_nodes> places_;
+  std::array<Configuration<L>, max_nodes> configurations_;
   std::array<State, max_nodes> trajectory_, rates_, correction_;
   std::array<L, max_nodes> force_;
   std::array<L, 2 * max_half_segments>
@@ -319,19 +320,19 @@ class PackOrbit {
   std::array<L, 5> high_, low_;  ///< sums of the last and last but two coefficients of what limits the error
   std::array<bool, quantity_count> wanted_;
   // Where the coefficients have kinks within a half: the switches of the pitch margin, as those of the rod force.
-  bool bends_;
-  std::array<ForceSwitches<L>, 2> bend_switches_{};
+  bool kinks_;
+  std::array<ForceSwitches<L>, 2> kink_switches_{};
   std::array<L, max_nodes> margin_;  ///< of the pitching at the nodes [rad]
   // The current behind the speed, where the inductance is small.
   bool lags_;
-  std::array<L, max_nodes> drop_;  ///< HalfCycle::drop at the nodes
-  L lag_residual_;                 ///< its last change, of the voltage
-  L layer_;                        ///< largest relaxation() of the speed, relative
+  std::array<L, max_nodes> inductive_drop_;  ///< HalfCycle::inductive_drop at the nodes
+  L lag_residual_;                           ///< its last change, of the voltage
+  L layer_;                                  ///< largest relaxation() of the speed, relative
 
   bool in_one_piece_;                       ///< SegmentEquations instead of steps from node to node
   std::array<Matrix, max_nodes> jacobian_;  ///< of the rates, for those
   L slowest_, residual_ = L(0.0);
-  L moved_most_;                ///< by Newton's last correction, of all nodes: the speed [rad/s]
+  L max_move_;                  ///< by Newton's last correction, of all nodes: the speed [rad/s]
   L lift_opposed_;              ///< what the lift's integral is smaller by than that of its magnitude, relative to it
   L switch_error_;              ///< of segments that end off the rod force's sign changes
   L step_error_, speed_error_;  ///< of what the segments' polynomials leave out: at all, and of speed and time
@@ -357,12 +358,12 @@ auto PackOrbit<L, N>::derivatives(const State& y, const State& rates, const Rate
 }
 
 template <class L, int N>
-auto PackOrbit<L, N>::jacobian_at(const System& system, const Configuration<L>& place, const State& y,
+auto PackOrbit<L, N>::jacobian_at(const System& system, const Configuration<L>& configuration, const State& y,
                                   const State& rates, const L& force) const -> Matrix {
-  solver::Rates<System> at;
+  solver::Rates<System> moved_rates;
   return derivatives(y, rates, [&](const State& moved) -> const State& {
-    evaluate<false>(system, place, moved, force, at);
-    return at.dy;
+    evaluate<false>(system, configuration, moved, force, moved_rates);
+    return moved_rates.dy;
   });
 }
 
@@ -410,7 +411,7 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   }
   march();
   place_nodes();
-  if (lags_) drop_.fill(L(0.0));
+  if (lags_) inductive_drop_.fill(L(0.0));
   iterate();
   newton_iteration<Newton::last>();
 
@@ -440,8 +441,8 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   if (is_wanted(Quantity::energy)) total(Integral::reactive_work) = exchanged_energy();
   seek(Quantity::current, Extreme::current);
   seek(Quantity::force, Extreme::rod_force);
-  if (bends_ && is_wanted(Quantity::force)) {
-    peak_error_ = max(peak_error_, error_of_peak_on_bend(extremes[std::size_t(Extreme::rod_force)]));
+  if (kinks_ && is_wanted(Quantity::force)) {
+    peak_error_ = max(peak_error_, error_of_peak_on_kink(extremes[std::size_t(Extreme::rod_force)]));
   }
   seek(Quantity::negated_speed, Extreme::crank_speed_min);
   seek(Quantity::speed, Extreme::crank_speed_max);

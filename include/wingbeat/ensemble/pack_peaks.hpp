@@ -12,7 +12,7 @@ void PackOrbit<L, N>::follow(const L& segment, SegmentTrajectory<L, N>& trajecto
   const std::size_t intervals = std::size_t(rule_.intervals);
   std::array<State, nodes_per_segment> rates, y;
   trajectory = {};
-  for (State& at : y) at.fill(L(0.0));
+  for (State& state : y) state.fill(L(0.0));
   rates = y;
   for (int half = 0; half < 2; ++half) {
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
@@ -24,11 +24,11 @@ void PackOrbit<L, N>::follow(const L& segment, SegmentTrajectory<L, N>& trajecto
       trajectory.u = select<L>(here, mesh.u[s], trajectory.u);
       trajectory.length = select<L>(here, mesh.u[s + 1] - mesh.u[s], trajectory.length);
       trajectory.force = select<L>(here, mesh.force[s], trajectory.force);
-      if (bends_) trajectory.pitching = select<L>(here, mesh.pitching[s], trajectory.pitching);
+      if (kinks_) trajectory.pitching = select<L>(here, mesh.pitching[s], trajectory.pitching);
       for (std::size_t k = 0; lags_ && k <= intervals; ++k) {
         L sum(0.0);
-        for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.legendre[k][j]) * drop_[base + j];
-        trajectory.drop[k] = select<L>(here, sum, trajectory.drop[k]);
+        for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.legendre[k][j]) * inductive_drop_[base + j];
+        trajectory.inductive_drop[k] = select<L>(here, sum, trajectory.inductive_drop[k]);
       }
       for (std::size_t n = 0; n < N; ++n) {
         for (std::size_t j = 0; j <= intervals; ++j) {
@@ -68,22 +68,22 @@ template <class L, int N>
 Observable<L> PackOrbit<L, N>::observable_inside(Quantity quantity, const SegmentTrajectory<L, N>& trajectory,
                                                  const L& x) const {
   System system = {vehicle_, geometry_, per_inductance_, per_resistance_, trajectory.half, every_law_};
-  if (bends_) system.pitching = trajectory.pitching;
+  if (kinks_) system.pitching = trajectory.pitching;
   const L t = L(2.0) * x * inverse_of(max(trajectory.length, L(1e-12))) - L(1.0);
   State y;
   for (std::size_t n = 0; n < N; ++n) y[n] = trajectory.legendre[0][n] + t * trajectory.legendre[1][n];
   L before(1.0), here = t, slope_before(0.0), slope(1.0), drop_slope(0.0);
   if (lags_) {
-    system.drop = trajectory.drop[0] + t * trajectory.drop[1];
-    drop_slope = trajectory.drop[1];
+    system.inductive_drop = trajectory.inductive_drop[0] + t * trajectory.inductive_drop[1];
+    drop_slope = trajectory.inductive_drop[1];
   }
   for (std::size_t k = 1; k <= std::size_t(rule_.intervals); ++k) {
     const L next = L(double(2 * k + 1) / double(k + 1)) * t * here - L(double(k) / double(k + 1)) * before;
     for (std::size_t n = 0; n < N; ++n) y[n] = y[n] + trajectory.legendre[k + 1][n] * next;
     if (lags_) {
       const L next_slope = slope_before + L(double(2 * k + 1)) * here;
-      system.drop = system.drop + trajectory.drop[k + 1] * next;
-      drop_slope = drop_slope + trajectory.drop[k + 1] * next_slope;
+      system.inductive_drop = system.inductive_drop + trajectory.inductive_drop[k + 1] * next;
+      drop_slope = drop_slope + trajectory.inductive_drop[k + 1] * next_slope;
       slope_before = slope;
       slope = next_slope;
     }
@@ -92,10 +92,10 @@ Observable<L> PackOrbit<L, N>::observable_inside(Quantity quantity, const Segmen
   }
   drop_slope = drop_slope * L(2.0) * inverse_of(max(trajectory.length, L(1e-12)));
   const L u = trajectory.u + x;
-  const Configuration<L> place = system.place(u);
-  const Motion<L> motion = system.motion(place, y, trajectory.force);
+  const Configuration<L> configuration = system.configuration(u);
+  const Motion<L> motion = system.motion(configuration, y, trajectory.force);
   const State dy = system.template rates_of<false>(motion, y, trajectory.force).dy;
-  if (quantity != Quantity::force) return observable(system, place, y, motion, dy, quantity);
+  if (quantity != Quantity::force) return observable(system, configuration, y, motion, dy, quantity);
   // The slope along the solution by central differences.
   constexpr double by = 1e-4;
   L ahead[2];
@@ -104,8 +104,8 @@ Observable<L> PackOrbit<L, N>::observable_inside(Quantity quantity, const Segmen
     State moved;
     for (std::size_t n = 0; n < N; ++n) moved[n] = y[n] + move * dy[n];
     System there = system;
-    if (lags_) there.drop = system.drop + move * drop_slope;
-    ahead[side] = there.motion(there.place(u + move), moved, trajectory.force).rod_force;
+    if (lags_) there.inductive_drop = system.inductive_drop + move * drop_slope;
+    ahead[side] = there.motion(there.configuration(u + move), moved, trajectory.force).rod_force;
   }
   return {trajectory.force * motion.rod_force, trajectory.force * (ahead[1] - ahead[0]) * L(0.5 / by)};
 }
@@ -143,11 +143,11 @@ void PackOrbit<L, N>::for_each_subinterval(int half, Quantity quantity, const L&
           SegmentTrajectory<L, N> trajectory;
           follow(b.segment, trajectory);
           const L x = x0 + select<L>(twice, middle, L(0.5)) * width;
-          const Observable<L> at = observable_inside(quantity, trajectory, x);
+          const Observable<L> observed = observable_inside(quantity, trajectory, x);
           PeakBracket<L> first = b, second = b;
           first.x1 = second.x0 = x;
-          first.v1 = second.v0 = at.value;
-          first.d1 = second.d0 = at.slope;
+          first.v1 = second.v0 = observed.value;
+          first.d1 = second.d0 = observed.slope;
           visit(first, twice);
           visit(second, twice);
           continue;
@@ -216,7 +216,7 @@ L PackOrbit<L, N>::error_inside(Quantity quantity, const SegmentTrajectory<L, N>
         beside.legendre[0][n] = trajectory.legendre[0][n] + L(by) * size;
         const L change = abs(observable_inside(quantity, beside, x).value - value) * L(1.0 / by) * per_value;
         L off = left_out(n);
-        if (n == 0) off = off + L(0.5) * moved_most_;
+        if (n == 0) off = off + L(0.5) * max_move_;
         error = error + L(2.0) * off * inverse_of(size) * change;
       }
       return error;
@@ -237,7 +237,8 @@ void PackOrbit<L, N>::refresh(Quantity quantity) {
     if (quantity == Quantity::negated_speed) value = -y[0];
     if (quantity == Quantity::current) {
       if constexpr (N == 2) value = y[1];
-      else value = algebraic_current(vehicle_, lags_ ? L(vehicle_.voltage - drop_[n]) : vehicle_.voltage, y[0]);
+      else
+        value = algebraic_current(vehicle_, lags_ ? L(vehicle_.voltage - inductive_drop_[n]) : vehicle_.voltage, y[0]);
     }
   }
 }
@@ -256,8 +257,8 @@ L PackOrbit<L, N>::refine(Quantity quantity, const L& sign, PeakBracket<L> b) {
   for (int n = 0; n < 8 && any<L>(active); ++n) {
     const L t = estimate_peak(b);
     const L x = b.x0 + t * (b.x1 - b.x0);
-    const Observable<L> at = observable_inside(quantity, trajectory, x);
-    const L v = sign * at.value, d = sign * at.slope;
+    const Observable<L> observed = observable_inside(quantity, trajectory, x);
+    const L v = sign * observed.value, d = sign * observed.slope;
     found = select<L>(active, x, found);
     const Mask rising = active && d > L(0.0), falling = active && !rising;
     b.x0 = select<L>(rising, x, b.x0);

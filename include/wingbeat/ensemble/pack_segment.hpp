@@ -25,21 +25,21 @@ namespace wingbeat {
 /// the start moved by 1.
 template <class L, int N, int known_intervals, bool renews>
 class SegmentEquations {
-  static constexpr std::size_t most =
+  static constexpr std::size_t max_intervals =
       std::size_t(known_intervals > 0 ? known_intervals : solver::max_collocation_intervals);
   static constexpr std::size_t sides = renews ? 1 + N : 1;
-  using Row = std::array<L, most>;
+  using Row = std::array<L, max_intervals>;
   using Sides = std::array<L, sides>;
 
  public:
   using Matrix = std::array<std::array<L, N>, N>;
 
   /// [node - 1][state][side]: the right sides, and afterwards what the nodes move by.
-  std::array<std::array<Sides, N>, most> moved;
+  std::array<std::array<Sides, N>, max_intervals> moved;
 
   /// For moved[.][.][0] as it stands.
   [[gnu::always_inline]] inline void solve(const solver::CollocationRule& rule, const Matrix* jacobian, const L& h) {
-    const std::size_t count = known_intervals > 0 ? most : std::size_t(rule.intervals);
+    const std::size_t count = known_intervals > 0 ? max_intervals : std::size_t(rule.intervals);
     const auto each = [&](const auto& visit) __attribute__((always_inline)) { for_each_index(count, visit); };
     Row by_speed, by_current, relaxing, follows;
     for (std::size_t j = 0; j < count; ++j) {
@@ -126,7 +126,7 @@ class SegmentEquations {
       for (std::size_t side = 0; side < sides; ++side) moved[m][0][side] = sum[side] * speed_pivot_[m];
     }
     if constexpr (N == 2) {
-      std::array<Sides, most> driven;
+      std::array<Sides, max_intervals> driven;
       for (std::size_t j = 0; j < count; ++j) {
         const L drives = h * jacobian[j + 1][1][0];
         for (std::size_t side = 0; side < sides; ++side) driven[j][side] = drives * moved[j][0][side];
@@ -165,14 +165,14 @@ class SegmentEquations {
     if constexpr (known_intervals > 0) {
       [&]<std::size_t... n>(std::index_sequence<n...>) __attribute__((always_inline)) {
         (visit(std::integral_constant<std::size_t, n>{}), ...);
-      }(std::make_index_sequence<most>{});
+      }(std::make_index_sequence<max_intervals>{});
     } else {
       for (std::size_t n = 0; n < count; ++n) visit(n);
     }
   }
 
-  std::array<Row, most> speed_;                 ///< upper factor; the pivots' inverses aside
-  std::array<Row, N == 2 ? most : 0> current_;  ///< both factors
+  std::array<Row, max_intervals> speed_;                 ///< upper factor; the pivots' inverses aside
+  std::array<Row, N == 2 ? max_intervals : 0> current_;  ///< both factors
   Row speed_pivot_, current_pivot_;
 };
 

@@ -13,7 +13,8 @@ void PackOrbit<L, N>::tabulate() {
   for (int half = 0; half < 2; ++half) {
     const System system = half_cycle(half);
     for (int k = 0; k < coarse_samples; ++k) {
-      table_[std::size_t(half)][std::size_t(k)] = system.place(L(quarter * (2.0 * k / (coarse_samples - 1) - 1.0)));
+      table_[std::size_t(half)][std::size_t(k)] =
+          system.configuration(L(quarter * (2.0 * k / (coarse_samples - 1) - 1.0)));
     }
   }
 }
@@ -31,12 +32,12 @@ void PackOrbit<L, N>::assess_statics() {
   const L inertia_margin(from_rest ? 0.05 : 0.15), lever_margin(from_rest ? 0.02 : 0.05);
   const bool springs = !from_rest && any<L>(v.spring.stiffness > L(0.0));
   for (const auto& half : table_) {
-    for (const Configuration<L>& place : half) {
-      const CrankKinematics<L>& k = place.kinematics;
+    for (const Configuration<L>& configuration : half) {
+      const CrankKinematics<L>& k = configuration.kinematics;
       unresolved_ = unresolved_ || !(min_inertia(v, k) > inertia_margin * v.motor.inertia) ||
-                    !(k.wing_lever > lever_margin * typical_lever(v.transmission));
+                    !(k.wing_jacobian > lever_margin * typical_lever(v.transmission));
       if (springs) {
-        unresolved_ = unresolved_ || !(advance_torque(v, k, place.spring_moment, L(L(0.95) * stall)) > L(0.0));
+        unresolved_ = unresolved_ || !(advance_torque(v, k, configuration.spring_moment, L(L(0.95) * stall)) > L(0.0));
       }
     }
   }
@@ -48,12 +49,13 @@ L PackOrbit<L, N>::guess_speed() {
   constexpr int stride = 4, count = coarse_samples / stride;
   std::array<LoadPlace<L>, 2 * count> places;
   for (int n = 0; n < 2 * count; ++n) {
-    const Configuration<L>& at = table_[std::size_t(n / count)][std::size_t(stride / 2 + stride * (n % count))];
-    places[std::size_t(n)] = load_place(vehicle_, at.kinematics, at.spring_moment);
+    const Configuration<L>& configuration =
+        table_[std::size_t(n / count)][std::size_t(stride / 2 + stride * (n % count))];
+    places[std::size_t(n)] = load_place(vehicle_, configuration.kinematics, configuration.spring_moment);
   }
   const System downward = half_cycle(1);
   const OrbitGuess<L> guess =
-      guess_orbit(vehicle_, places, [&](const L& angle) { return downward.place(L(quarter) - angle); });
+      guess_orbit(vehicle_, places, [&](const L& angle) { return downward.configuration(L(quarter) - angle); });
   y_[0] = guess.crank_speed;
   if constexpr (N == 2) y_[1] = algebraic_current(vehicle_, vehicle_.voltage, guess.earlier_speed);
   return guess.balanced.count;
@@ -163,9 +165,9 @@ void PackOrbit<L, N>::start_from_rest() {
   constexpr double beyond = 0.05;  // [rad]
   // What the springs' torque exceeds the motor's stall torque and friction by [N m].
   const auto turns_back = [&](const L& angle) {
-    const CrankKinematics<L> at = crank_kinematics(geometry_, sin(angle), cos(angle));
-    const L F_s = static_rod_force(at, spring_moment(vehicle_, at));
-    return F_s * at.crank_lever + vehicle_.load_torque - stall - holding_torque(vehicle_, F_s);
+    const CrankKinematics<L> kinematics = crank_kinematics(geometry_, sin(angle), cos(angle));
+    const L F_s = static_rod_force(kinematics, spring_moment(vehicle_, kinematics));
+    return F_s * kinematics.crank_jacobian + vehicle_.load_torque - stall - holding_torque(vehicle_, F_s);
   };
   const L back = min(turns_back(x[0]), turns_back(L(x[0] + L(beyond))));
   L magnetic = L(0.5) * vehicle_.motor.armature_inductance * square(current_scale_);
@@ -207,33 +209,33 @@ auto PackOrbit<L, N>::implicit_step(const State& y, const L& h, const Matrix& ja
     inverse[0][1] = -(b * per_a * per_rest);
     inverse[0][0] = per_a - b * per_a * inverse[1][0];
   }
-  State known = y, at = y;
+  State known = y, moved = y;
   for (int stage = 0; stage < 2; ++stage) {
     for (int newton = 0; newton < 2; ++newton) {
-      const State slope = rates(stage, at);
+      const State slope = rates(stage, moved);
       State off;
-      for (std::size_t n = 0; n < N; ++n) off[n] = known[n] + own * slope[n] - at[n];
-      const L least = L(0.3) * at[0];  // it shall not pass standstill
+      for (std::size_t n = 0; n < N; ++n) off[n] = known[n] + own * slope[n] - moved[n];
+      const L least = L(0.3) * moved[0];  // it shall not pass standstill
       for (std::size_t n = 0; n < N; ++n) {
-        at[n] = at[n] + inverse[n][0] * off[0];
-        if constexpr (N == 2) at[n] = at[n] + inverse[n][1] * off[1];
+        moved[n] = moved[n] + inverse[n][0] * off[0];
+        if constexpr (N == 2) moved[n] = moved[n] + inverse[n][1] * off[1];
       }
-      at[0] = max(at[0], least);
+      moved[0] = max(moved[0], least);
     }
     // What the first stage leaves to the second: y + (1 - first_stage) h slope.
-    for (std::size_t n = 0; n < N; ++n) known[n] = y[n] + L((1.0 - first_stage) / first_stage) * (at[n] - y[n]);
+    for (std::size_t n = 0; n < N; ++n) known[n] = y[n] + L((1.0 - first_stage) / first_stage) * (moved[n] - y[n]);
   }
-  return at;
+  return moved;
 }
 
 /// Derivatives of the rates at a sample, each on the branch that holds there.
 template <class L, int N>
-auto PackOrbit<L, N>::jacobian_on_its_branch(const System& system, const Configuration<L>& place, const State& y,
-                                             const State& rates) const -> Matrix {
+auto PackOrbit<L, N>::jacobian_on_its_branch(const System& system, const Configuration<L>& configuration,
+                                             const State& y, const State& rates) const -> Matrix {
   State beside;
   L force;
   return derivatives(y, rates, [&](const State& moved) -> const State& {
-    find_rates(system, place, moved, beside, force);
+    find_rates(system, configuration, moved, beside, force);
     return beside;
   });
 }
@@ -248,8 +250,8 @@ void PackOrbit<L, N>::replace_stiff(const System& system, const Configuration<L>
   L force;
   Configuration<L> inside;
   find_configuration(system, u + L(first_stage) * h, inside);
-  const State by_implicit = implicit_step(y, h, jacobian, [&](int stage, const State& at) {
-    find_rates(system, stage == 0 ? inside : over[2], at, rates, force);
+  const State by_implicit = implicit_step(y, h, jacobian, [&](int stage, const State& stage_state) {
+    find_rates(system, stage == 0 ? inside : over[2], stage_state, rates, force);
     return rates;
   });
   State middle;
@@ -283,13 +285,13 @@ void PackOrbit<L, N>::coarse_iterate() {
       return to;
     };
     for (std::size_t k = 0; k + 2 < coarse_samples; k += 2) {
-      const auto at = [&](std::size_t sample, const State& y) {
+      const auto slope_at = [&](std::size_t sample, const State& y) {
         const Motion<L> m = system.motion_on_its_branch(table[sample], y);
         force[sample] = m.force_switch;
-        if (bends_) margin[sample] = m.aero.pitch_margin;
+        if (kinks_) margin[sample] = m.aero.pitch_margin;
         return system.template rates_of<false>(m, y, L(1.0)).dy;
       };
-      const State k1 = at(k, y_);
+      const State k1 = slope_at(k, y_);
       Mask stiff = L(1.0) < L(0.0);
       Matrix jacobian;
       if (settings_.implicit) {
@@ -297,10 +299,10 @@ void PackOrbit<L, N>::coarse_iterate() {
         stiff = is_stiff(jacobian, L(h));
       }
       State next = y_;
-      if (bends_ || !all<L>(stiff)) {  // the margins are those of the explicit stages
-        const State k2 = at(k + 1, moved(y_, k1, 0.5 * h));
-        const State k3 = at(k + 1, moved(y_, k2, 0.5 * h));
-        const State k4 = at(k + 2, moved(y_, k3, h));
+      if (kinks_ || !all<L>(stiff)) {  // the margins are those of the explicit stages
+        const State k2 = slope_at(k + 1, moved(y_, k1, 0.5 * h));
+        const State k3 = slope_at(k + 1, moved(y_, k2, 0.5 * h));
+        const State k4 = slope_at(k + 2, moved(y_, k3, h));
         for (std::size_t n = 0; n < N; ++n) {
           next[n] = y_[n] + L(h / 6.0) * (k1[n] + L(2.0) * (k2[n] + k3[n]) + k4[n]);
         }
@@ -313,7 +315,7 @@ void PackOrbit<L, N>::coarse_iterate() {
     }
     if constexpr (last) {
       find_switches(switches_[std::size_t(half)], angles.data(), force.data(), coarse_samples - 1);
-      if (bends_) find_switches(bend_switches_[std::size_t(half)], angles.data(), margin.data(), coarse_samples - 1);
+      if (kinks_) find_switches(kink_switches_[std::size_t(half)], angles.data(), margin.data(), coarse_samples - 1);
     }
   }
   lost_ = lost_ || !(slowest_ > floor_);
@@ -328,8 +330,8 @@ void PackOrbit<L, N>::march() {
     build_mesh(half);
     const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
     std::array<L, 2 * max_half_segments + 1> u, force, margin;
-    std::array<Configuration<L>, 3> places;
-    places[2] = system.place(mesh.u[0]);
+    std::array<Configuration<L>, 3> configurations;
+    configurations[2] = system.configuration(mesh.u[0]);
     const auto moved = [](const State& from, const State& slope, const L& by) {
       State to;
       for (std::size_t n = 0; n < N; ++n) to[n] = from[n] + by * slope[n];
@@ -338,15 +340,16 @@ void PackOrbit<L, N>::march() {
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       Subinterval& subinterval = subintervals_[std::size_t(half * segments_) + s];
       const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s], half_h = L(0.5) * h;
-      if (bends_) system.pitching = mesh.pitching[s];
+      if (kinks_) system.pitching = mesh.pitching[s];
       u[2 * s] = mesh.u[s];
       u[2 * s + 1] = mesh.u[s] + half_h;
-      const Configuration<L>&start = places[s % 2 == 0 ? 2 : 0], &middle = places[1], &end = places[s % 2 == 0 ? 0 : 2];
-      find_configuration(system, u[2 * s + 1], places[1]);
-      find_configuration(system, mesh.u[s + 1], places[s % 2 == 0 ? 0 : 2]);
+      const Configuration<L>&start = configurations[s % 2 == 0 ? 2 : 0], &middle = configurations[1],
+            &end = configurations[s % 2 == 0 ? 0 : 2];
+      find_configuration(system, u[2 * s + 1], configurations[1]);
+      find_configuration(system, mesh.u[s + 1], configurations[s % 2 == 0 ? 0 : 2]);
       evaluate<false>(system, start, y_, sign, k1);
       force[2 * s] = k1.switches[0];
-      if (bends_) margin[2 * s] = system.pitch_margin_at(start, y_);
+      if (kinks_) margin[2 * s] = system.pitch_margin_at(start, y_);
       subinterval.y = y_;
       subinterval.rates = k1.dy;
       Mask stiff = L(1.0) < L(0.0);
@@ -362,7 +365,7 @@ void PackOrbit<L, N>::march() {
         const State inside = moved(y_, k2.dy, half_h);
         evaluate<false>(system, middle, inside, sign, k3);
         force[2 * s + 1] = k3.switches[0];
-        if (bends_) margin[2 * s + 1] = system.pitch_margin_at(middle, inside);
+        if (kinks_) margin[2 * s + 1] = system.pitch_margin_at(middle, inside);
         evaluate<false>(system, end, moved(y_, k3.dy, h), sign, k4);
         for (std::size_t n = 0; n < N; ++n) {
           next[n] = y_[n] + L(1.0 / 6.0) * h * (k1.dy[n] + L(2.0) * (k2.dy[n] + k3.dy[n]) + k4.dy[n]);
@@ -383,19 +386,19 @@ void PackOrbit<L, N>::march() {
         }
         evaluate<false>(system, middle, between, sign, rates);
         force[2 * s + 1] = select<L>(stiff, rates.switches[0], force[2 * s + 1]);
-        if (bends_) margin[2 * s + 1] = select<L>(stiff, system.pitch_margin_at(middle, between), margin[2 * s + 1]);
+        if (kinks_) margin[2 * s + 1] = select<L>(stiff, system.pitch_margin_at(middle, between), margin[2 * s + 1]);
       }
       y_ = next;
     }
     u[2 * std::size_t(segments_)] = mesh.u[std::size_t(segments_)];
-    evaluate<false>(system, places[segments_ % 2 == 0 ? 2 : 0], y_, mesh.force[std::size_t(segments_ - 1)], k4);
+    evaluate<false>(system, configurations[segments_ % 2 == 0 ? 2 : 0], y_, mesh.force[std::size_t(segments_ - 1)], k4);
     force[2 * std::size_t(segments_)] = k4.switches[0];
     subintervals_[std::size_t((half + 1) * segments_)].y = y_;
     subintervals_[std::size_t((half + 1) * segments_)].rates = k4.dy;
     find_switches(switches_[std::size_t(half)], u.data(), force.data(), 2 * segments_);
-    if (bends_) {
-      margin[2 * std::size_t(segments_)] = system.pitch_margin_at(places[segments_ % 2 == 0 ? 2 : 0], y_);
-      find_switches(bend_switches_[std::size_t(half)], u.data(), margin.data(), 2 * segments_);
+    if (kinks_) {
+      margin[2 * std::size_t(segments_)] = system.pitch_margin_at(configurations[segments_ % 2 == 0 ? 2 : 0], y_);
+      find_switches(kink_switches_[std::size_t(half)], u.data(), margin.data(), 2 * segments_);
     }
   }
 }

@@ -11,7 +11,7 @@ namespace wingbeat {
 
 /// Angle of attack below which a vehicle's force coefficients are those there [rad]: the stop of its pitching, or where
 /// its table begins; minus infinity without either.
-inline double bend_of_coefficients(const Vehicle<double>& v) {
+inline double kink_of_coefficients(const Vehicle<double>& v) {
   const auto& table = v.wings.coefficients.table;
   const double stop = v.wings.angle_of_attack_min;
   return table ? std::max(stop, table->alpha().front()) : stop;

@@ -87,7 +87,7 @@ struct PublishedTrend {
   std::optional<std::string> relative_to;  ///< of a crossing, change or difference
   std::string over;                        ///< what varies: a key of the vehicle file; empty: the flapping frequency
   double from = 0.0, to = 0.0;             ///< range of it, or of the frequency [SI]
-  double at = absent;                      ///< one value of it [SI]
+  double over_value = absent;              ///< one value of it [SI]
   bool hold_stroke = false;                ///< the stroke amplitude stays, not the hinge offset
   std::optional<double> voltage;           ///< [V]
   std::optional<double> frequency;         ///< [Hz]

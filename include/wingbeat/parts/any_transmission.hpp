@@ -22,8 +22,8 @@ struct AnyTransmission {
   StrokeTable<S> tabulated = {};
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.type, of.slider_crank, of.four_bar, of.tabulated);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.type, self.slider_crank, self.four_bar, self.tabulated);
   }
 };
 

@@ -35,9 +35,9 @@ struct Battery {
   std::optional<S> specific_energy;
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.cells, of.cell_voltage, of.discharge_curve, of.internal_resistance, of.capacity, of.charge,
-               of.cutoff_voltage, of.specific_energy);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.cells, self.cell_voltage, self.discharge_curve, self.internal_resistance, self.capacity,
+               self.charge, self.cutoff_voltage, self.specific_energy);
   }
 };
 
@@ -76,9 +76,9 @@ template <Scalar S>
 S open_circuit_voltage(const Battery<S>& b, const S& charge) {
   const auto& curve = b.discharge_curve;
   if (curve.size() < 2) return b.cells * (curve.empty() ? b.cell_voltage : S(curve.front().second));
-  const double at = value_of(charge);
+  const double used = value_of(charge);
   std::size_t k = 0;
-  while (k + 2 < curve.size() && at >= curve[k + 1].first) ++k;
+  while (k + 2 < curve.size() && used >= curve[k + 1].first) ++k;
   const auto [x0, y0] = curve[k];
   const auto [x1, y1] = curve[k + 1];
   const double h = x1 - x0, secant = (y1 - y0) / h;

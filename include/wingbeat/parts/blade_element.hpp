@@ -34,8 +34,8 @@ struct CoefficientWave {
   S phase;      ///< [rad]
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.offset, of.amplitude, of.rate, of.phase);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.offset, self.amplitude, self.rate, self.phase);
   }
 };
 
@@ -51,8 +51,8 @@ struct CoefficientLookup {
   const Row* row;      ///< [k]: where k knots lie at or below alpha
   const int* first;    ///< [b]: knots before bucket b of the table's angles
   int buckets;
-  int most;      ///< knots in one bucket
-  double front;  ///< first angle of the table [rad]
+  int max_in_bucket;  ///< knots in one bucket
+  double front;       ///< first angle of the table [rad]
   double buckets_per_angle;
   /// Where all knots are a whole number of equal steps from the first: of each step, t counted in steps from its start;
   /// else null.
@@ -65,10 +65,10 @@ struct CoefficientLookup {
 
   /// How many knots lie at or below alpha.
   [[gnu::always_inline]] int knots_up_to(double alpha) const {
-    const double at = (alpha - front) * buckets_per_angle, last = buckets - 1;
-    int k = first[int(!(at > 0.0) ? 0.0 : at < last ? at : last)];
+    const double bucket = (alpha - front) * buckets_per_angle, last = buckets - 1;
+    int k = first[int(!(bucket > 0.0) ? 0.0 : bucket < last ? bucket : last)];
     k += alpha >= knot[k];
-    for (int n = 1; n < most; ++n) k += alpha >= knot[k];
+    for (int n = 1; n < max_in_bucket; ++n) k += alpha >= knot[k];
     return k;
   }
 };
@@ -100,7 +100,7 @@ class CoefficientTable {
   std::vector<CoefficientLookup::Row> rows_;
   std::vector<int> first_;
   std::vector<CoefficientLookup::Step> steps_;
-  int most_ = 0;
+  int max_in_bucket_ = 0;
 };
 
 /// What SIMD lanes, which read no tables by themselves, know of their designs' tables and of where the coefficients
@@ -108,10 +108,10 @@ class CoefficientTable {
 /// have a table or none, and either all have a kink or none.
 template <Scalar S>
 struct LaneTables {
-  CoefficientLookup of[std::size_t(ScalarTraits<S>::lanes)];
+  CoefficientLookup lookup[std::size_t(ScalarTraits<S>::lanes)];
   S front, steps_per_angle, last_step;  ///< of them, where they have steps
-  S bend;                               ///< angle of attack below which the coefficients are those there [rad]
-  bool from_tables = false, bends = false;
+  S kink;                               ///< angle of attack below which the coefficients are those there [rad]
+  bool from_tables = false, kinks = false;
 
   LaneTables(std::nullptr_t = nullptr) {}  // NOLINT: of lanes without
 };
@@ -127,8 +127,8 @@ struct ForceCoefficients {
   Table table = nullptr;
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.lift, of.drag, of.table);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.lift, self.drag, self.table);
   }
 };
 
@@ -169,9 +169,9 @@ struct BladeElement {
   S added_inertia = S(0);  ///< J_a of all wings, of the air that moves normal to the chord [kg m2], >= 0; 0 without
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.air_density, of.pitch_coefficient, of.s2, of.s3, of.coefficients, of.angle_of_attack_min,
-               of.added_inertia);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.air_density, self.pitch_coefficient, self.s2, self.s3, self.coefficients, self.angle_of_attack_min,
+               self.added_inertia);
   }
 };
 
@@ -205,15 +205,15 @@ S evaluate_table(const Choose& choose, const S& alpha) {
 template <Scalar S>
 [[gnu::always_inline]] inline LiftAndDrag<S> read_tables(const LaneTables<S>& tables, const S& alpha) {
   constexpr int lanes = ScalarTraits<S>::lanes;
-  alignas(64) double at[std::size_t(lanes)], step[std::size_t(lanes)], along[std::size_t(lanes)],
+  alignas(64) double step_position[std::size_t(lanes)], step[std::size_t(lanes)], along[std::size_t(lanes)],
       lift[std::size_t(lanes)], drag[std::size_t(lanes)];
-  alpha.store(at);
+  alpha.store(step_position);
   const S place = (alpha - tables.front) * tables.steps_per_angle;
   const S in_order = min(select<S>(place > S(0.5), nearest_whole(S(place - S(0.5))), S(0.0)), tables.last_step);
   in_order.store(step);
   S(place - in_order).store(along);
   for (int lane = 0; lane < lanes; ++lane) {
-    const CoefficientLookup& table = tables.of[lane];
+    const CoefficientLookup& table = tables.lookup[lane];
     if (table.step) {
       const CoefficientLookup::Step& s = table.step[int(step[lane])];
       const double t = along[lane];
@@ -221,9 +221,9 @@ template <Scalar S>
       drag[lane] = s.drag[0] + t * (s.drag[1] + t * (s.drag[2] + t * s.drag[3]));
       continue;
     }
-    const int k = table.knots_up_to(at[lane]);
+    const int k = table.knots_up_to(step_position[lane]);
     const CoefficientLookup::Row& r = table.row[k > 1 ? k : 1];
-    const double t = at[lane] - r.x0;
+    const double t = step_position[lane] - r.x0;
     lift[lane] = r.lift[0] + t * (r.lift[1] + t * (r.lift[2] + t * r.lift[3]));
     drag[lane] = r.drag[0] + t * (r.drag[1] + t * (r.drag[2] + t * r.drag[3]));
   }
@@ -282,7 +282,7 @@ S pitch_margin(const BladeElement<S>& w, const S& stroke_speed) {
   if constexpr (ScalarTraits<S>::reads_tables) {
     if (has_pitch_stop(w)) return S(pi / 2.0) - w.pitch_coefficient * stroke_speed - w.angle_of_attack_min;
   } else {
-    if (w.coefficients.table.bends) return S(pi / 2.0) - w.pitch_coefficient * stroke_speed - w.coefficients.table.bend;
+    if (w.coefficients.table.kinks) return S(pi / 2.0) - w.pitch_coefficient * stroke_speed - w.coefficients.table.kink;
   }
   return S(1.0);
 }
@@ -302,9 +302,9 @@ struct AeroLoads {
 
 /// Whether lanes have to know on which side of a kink their coefficients are.
 template <Scalar S>
-bool bends_on_lanes(const BladeElement<S>& w) {
+bool kinks_on_lanes(const BladeElement<S>& w) {
   if constexpr (ScalarTraits<S>::reads_tables) return false;
-  else return w.coefficients.table.bends;
+  else return w.coefficients.table.kinks;
 }
 
 /// added_inertia() where there is some, out of the way of vehicles without.
@@ -314,7 +314,7 @@ template <Scalar S>
   using std::sin;
   const S s = sin(alpha), c = cos(alpha);
   S share = s * s - (S(0.5 * pi) - alpha) * s * c;
-  if (ScalarTraits<S>::reads_tables || bends_on_lanes(w)) share = select<S>(pitching >= S(0.0), share, s * s);
+  if (ScalarTraits<S>::reads_tables || kinks_on_lanes(w)) share = select<S>(pitching >= S(0.0), share, s * s);
   return w.added_inertia * share;
 }
 
@@ -358,12 +358,12 @@ template <bool every_law = true, Scalar S>
   if constexpr (ScalarTraits<S>::reads_tables) alpha = select(pitching >= S(0.0), alpha, w.angle_of_attack_min);
   S read_at = alpha;
   if constexpr (!ScalarTraits<S>::reads_tables && every_law) {
-    if (bends_on_lanes(w)) {
+    if (kinks_on_lanes(w)) {
       // Below the start of a table the wing pitches on, up to its stop.
-      const S &bend = w.coefficients.table.bend, &stop = w.angle_of_attack_min;
+      const S &kink = w.coefficients.table.kink, &stop = w.angle_of_attack_min;
       using std::max;
-      const auto held = pitching < S(0.0), stops = bend == stop;
-      read_at = select<S>(held, bend, alpha);
+      const auto held = pitching < S(0.0), stops = kink == stop;
+      read_at = select<S>(held, kink, alpha);
       alpha = select<S>(held, select<S>(stops, stop, max(alpha, stop)), alpha);
       at_stop = select<S>(stops, pitching, S(1.0));
     }

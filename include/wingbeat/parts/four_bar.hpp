@@ -28,9 +28,9 @@ struct FourBar {
   S ground_angle = S(0);    ///< phi_mid, from the ground link to the rocker at stroke angle zero [rad]
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.crank_radius, of.coupler_length, of.rocker_length, of.ground_length, of.stroke_ratio,
-               of.ground_angle);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.crank_radius, self.coupler_length, self.rocker_length, self.ground_length, self.stroke_ratio,
+               self.ground_angle);
   }
 };
 
@@ -90,9 +90,9 @@ CrankKinematics<S> crank_kinematics(const FourBar<S>& f, const S& sin_theta, con
   k.stroke_offset = n_s * (S(0.5 * pi) - atan(S(cos_phi * inverse_of(sin_phi))) - f.ground_angle);
   k.tan_stroke = S(0.0);
   k.stroke_slope = n_s * slope;
-  k.stroke_curve = n_s * (dl_h - slope * dl_p_sin_mu) * per_l_p_sin_mu;
-  k.wing_lever = l_p_sin_mu * per_l / n_s;
-  k.crank_lever = l_h * per_l;
+  k.stroke_second_derivative = n_s * (dl_h - slope * dl_p_sin_mu) * per_l_p_sin_mu;
+  k.wing_jacobian = l_p_sin_mu * per_l / n_s;
+  k.crank_jacobian = l_h * per_l;
   return k;
 }
 
@@ -110,11 +110,11 @@ RockerEnds<S> rocker_ends(const FourBar<S>& f) {
   using std::atan;
   const S d = f.ground_length, p = f.rocker_length;
   // pi less the angle at the rocker's axis of the triangle with the side `reach` opposite.
-  const auto at = [&](const S& reach) {
+  const auto angle_beyond = [&](const S& reach) {
     const S cosine = (square(d) + square(p) - square(reach)) / (S(2.0) * d * p);
     return S(S(pi) - S(2.0) * atan(root_of(S((S(1.0) - cosine) / (S(1.0) + cosine))).value));
   };
-  return {at(S(f.coupler_length + f.crank_radius)), at(S(f.coupler_length - f.crank_radius))};
+  return {angle_beyond(S(f.coupler_length + f.crank_radius)), angle_beyond(S(f.coupler_length - f.crank_radius))};
 }
 
 /// \f$\varphi_\mathrm{mid} = \tfrac12 (\varphi_+ + \varphi_-)\f$ [rad], which centres the stroke at zero.

@@ -32,8 +32,8 @@ struct Friction {
   S torque = S(0);     ///< \f$T_\mathrm{c}\f$, constant [N m], >= 0
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.radius, of.damping, of.quadratic, of.torque);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.radius, self.damping, self.quadratic, self.torque);
   }
 };
 

@@ -25,9 +25,9 @@ struct Motor {
   S gear_efficiency = S(1);  ///< eta of the gearbox under load [1], > 0, <= 1; 1 without
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.armature_resistance, of.armature_inductance, of.torque_constant, of.inertia, of.viscous_damping,
-               of.friction_torque, of.gear_efficiency);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.armature_resistance, self.armature_inductance, self.torque_constant, self.inertia,
+               self.viscous_damping, self.friction_torque, self.gear_efficiency);
   }
 };
 
@@ -69,8 +69,8 @@ struct GearMotor {
   S gear_damping = S(0);  ///< b_G of the gearbox at the output shaft [N m s/rad], >= 0
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.gear_ratio, of.motor_shaft, of.gear_inertia, of.gear_damping);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.gear_ratio, self.motor_shaft, self.gear_inertia, self.gear_damping);
   }
 };
 

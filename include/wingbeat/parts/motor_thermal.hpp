@@ -43,9 +43,9 @@ struct MotorThermal {
   S winding_temperature_max = S(usual_winding_temperature_max);   ///< largest temperature allowed to the winding [K]
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.resistance_winding, of.resistance_case, of.ambient_temperature, of.reference_temperature,
-               of.copper_temperature_coefficient, of.magnet_temperature_coefficient, of.winding_temperature_max);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.resistance_winding, self.resistance_case, self.ambient_temperature, self.reference_temperature,
+               self.copper_temperature_coefficient, self.magnet_temperature_coefficient, self.winding_temperature_max);
   }
 };
 
@@ -90,11 +90,11 @@ MotorTemperatures<S> settled_temperatures(const MotorThermal<S>& t, const S& P_c
 /// K(T_\mathrm{case}) = K_0 \max\left( 1 + a_B (T_\mathrm{case} - T_0),\, 0 \right)
 /// \f]
 template <Scalar S>
-Motor<S> at_temperatures(Motor<S> motor, const MotorThermal<S>& t, const MotorTemperatures<S>& at) {
+Motor<S> at_temperatures(Motor<S> motor, const MotorThermal<S>& t, const MotorTemperatures<S>& temperatures) {
   const S T_0 = t.reference_temperature;
-  const S field = S(1.0) + t.magnet_temperature_coefficient * (at.casing - T_0);
+  const S field = S(1.0) + t.magnet_temperature_coefficient * (temperatures.casing - T_0);
   motor.armature_resistance =
-      motor.armature_resistance * (S(1.0) + t.copper_temperature_coefficient * (at.winding - T_0));
+      motor.armature_resistance * (S(1.0) + t.copper_temperature_coefficient * (temperatures.winding - T_0));
   motor.torque_constant = motor.torque_constant * select(field > S(0.0), field, S(0.0));
   return motor;
 }

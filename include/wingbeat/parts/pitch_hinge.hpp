@@ -19,8 +19,8 @@ struct PitchHinge {
   S stop = S(infinity);  ///< psi_max: |psi| goes no further [rad], > 0, < pi; infinite where there is no stop
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.stiffness, of.damping, of.stop);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.stiffness, self.damping, self.stop);
   }
 };
 

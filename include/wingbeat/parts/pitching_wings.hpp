@@ -41,8 +41,8 @@ struct NormalForceCoefficient {
   S third;  ///< \f$C_\mathrm{N,3}\f$ [1]
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.first, of.third);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.first, self.third);
   }
 };
 
@@ -100,8 +100,8 @@ struct PitchAddedMass {
   S p = S(0);   ///< \f$m_p = \tfrac{\pi}{8} \rho S_{30}\f$ [kg m]: the same per pitch velocity
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.rr, of.rp, of.pp, of.r, of.p);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.rr, self.rp, self.pp, self.r, self.p);
   }
 };
 
@@ -129,9 +129,9 @@ struct PitchingWings {
   S edge_suction = S(0);  ///< s_L: share of the added mass's force along the chord that counts as lift, 0 to 1
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.hinge, of.pitch_inertia, of.mass_product, of.moments, of.air, of.rotational_coefficient,
-               of.damping_coefficient, of.normal_force, of.coefficient, of.edge_suction);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.hinge, self.pitch_inertia, self.mass_product, self.moments, self.air, self.rotational_coefficient,
+               self.damping_coefficient, self.normal_force, self.coefficient, self.edge_suction);
   }
 };
 
@@ -176,9 +176,9 @@ struct PitchInertia {
 
 /// `stroke_inertia`: N_w J_w [kg m2], of what else turns with the stroke as the caller likes.
 template <Scalar S>
-PitchInertia<S> pitch_inertia(const PitchingWings<S>& w, const S& stroke_inertia, const PitchState<S>& at) {
-  return {stroke_inertia + w.pitch_inertia * square(at.sin_psi) + w.air.rr * square(at.cos_psi),
-          (w.mass_product + w.air.rp) * at.cos_psi, w.pitch_inertia + w.air.pp};
+PitchInertia<S> pitch_inertia(const PitchingWings<S>& w, const S& stroke_inertia, const PitchState<S>& state) {
+  return {stroke_inertia + w.pitch_inertia * square(state.sin_psi) + w.air.rr * square(state.cos_psi),
+          (w.mass_product + w.air.rp) * state.cos_psi, w.pitch_inertia + w.air.pp};
 }
 
 /// Kinetic energy [J] of an inertia at pitch and stroke velocity.
@@ -186,9 +186,9 @@ PitchInertia<S> pitch_inertia(const PitchingWings<S>& w, const S& stroke_inertia
 /// T = \tfrac12 M_{bb} \dot\beta^2 + M_{bp} \dot\beta \dot\psi + \tfrac12 M_{pp} \dot\psi^2
 /// \f]
 template <Scalar S>
-S kinetic_energy(const PitchInertia<S>& m, const PitchState<S>& at) {
-  return S(0.5) * (m.bb * square(at.stroke_velocity) + m.pp * square(at.velocity)) +
-         m.bp * at.stroke_velocity * at.velocity;
+S kinetic_energy(const PitchInertia<S>& m, const PitchState<S>& state) {
+  return S(0.5) * (m.bb * square(state.stroke_velocity) + m.pp * square(state.velocity)) +
+         m.bp * state.stroke_velocity * state.velocity;
 }
 
 /// C_N [1] at the angle of attack alpha [rad]: a NormalForceCoefficient, or the components of lift and drag normal to
@@ -242,22 +242,22 @@ struct PitchAeroLoads {
 /// \end{aligned}
 /// \f]
 template <Scalar S>
-PitchAeroLoads<S> aero_loads(const BladeElement<S>& w, const PitchingWings<S>& p, const PitchState<S>& at,
+PitchAeroLoads<S> aero_loads(const BladeElement<S>& w, const PitchingWings<S>& p, const PitchState<S>& state,
                              const S& stroke, const S& turn) {
   const S& rho = w.air_density;
-  const S speed = stroke * at.stroke_velocity;
-  const S alpha = S(0.5 * pi) + stroke * at.psi;
-  const S translation = S(0.5) * rho * normal_force_coefficient(w, p, alpha) * speed * at.stroke_velocity;
-  const S rotation = p.rotational_coefficient * rho * speed * at.velocity;
-  const S damping = S(0.125) * rho * p.damping_coefficient * turn * square(at.velocity) * p.moments.s40;
+  const S speed = stroke * state.stroke_velocity;
+  const S alpha = S(0.5 * pi) + stroke * state.psi;
+  const S translation = S(0.5) * rho * normal_force_coefficient(w, p, alpha) * speed * state.stroke_velocity;
+  const S rotation = p.rotational_coefficient * rho * speed * state.velocity;
+  const S damping = S(0.125) * rho * p.damping_coefficient * turn * square(state.velocity) * p.moments.s40;
   PitchAeroLoads<S> loads;
   loads.angle_of_attack = alpha;
   loads.normal_force = translation * w.s2 + rotation * p.moments.s21;
-  loads.stroke_moment = (translation * w.s3 + rotation * p.moments.s22) * at.cos_psi;
+  loads.stroke_moment = (translation * w.s3 + rotation * p.moments.s22) * state.cos_psi;
   // The force of translation acts at the centre of pressure, that of rotation at mid-chord.
   loads.pitch_moment =
       translation * centre_of_pressure(alpha) * p.moments.s22 + S(0.5) * rotation * p.moments.s31 + damping;
-  loads.power = loads.stroke_moment * at.stroke_velocity + loads.pitch_moment * at.velocity;
+  loads.power = loads.stroke_moment * state.stroke_velocity + loads.pitch_moment * state.velocity;
   return loads;
 }
 
@@ -294,23 +294,23 @@ struct WingsAtPitch {
 /// \f]
 template <Scalar S>
 WingsAtPitch<S> wings_at_pitch(const BladeElement<S>& w, const PitchingWings<S>& p, const S& stroke_inertia,
-                               const PitchState<S>& at, const S& stroke, const S& turn, const S& held) {
-  const PitchInertia<S> m = pitch_inertia(p, stroke_inertia, at);
-  WingsAtPitch<S> of;
-  of.aero = aero_loads(w, p, at, stroke, turn);
-  of.hinge = hinge_loads(p.hinge, at.psi, at.velocity);
-  const S sc = (p.pitch_inertia - p.air.rr) * at.sin_psi * at.cos_psi;
-  const S h_b =
-      S(2.0) * sc * at.stroke_velocity * at.velocity - (p.mass_product + p.air.rp) * at.sin_psi * square(at.velocity);
-  const S h_p = -sc * square(at.stroke_velocity);
-  of.pitching_moment = -(h_p + of.hinge.moment + of.aero.pitch_moment);
-  of.coupling_moment = -m.bp;
+                               const PitchState<S>& state, const S& stroke, const S& turn, const S& held) {
+  const PitchInertia<S> m = pitch_inertia(p, stroke_inertia, state);
+  WingsAtPitch<S> wings;
+  wings.aero = aero_loads(w, p, state, stroke, turn);
+  wings.hinge = hinge_loads(p.hinge, state.psi, state.velocity);
+  const S sc = (p.pitch_inertia - p.air.rr) * state.sin_psi * state.cos_psi;
+  const S h_b = S(2.0) * sc * state.stroke_velocity * state.velocity -
+                (p.mass_product + p.air.rp) * state.sin_psi * square(state.velocity);
+  const S h_p = -sc * square(state.stroke_velocity);
+  wings.pitching_moment = -(h_p + wings.hinge.moment + wings.aero.pitch_moment);
+  wings.coupling_moment = -m.bp;
   const S per_inertia = select(held >= S(0.0), inverse_of(m.pp), S(0.0));
-  of.free_acceleration = of.pitching_moment * per_inertia;
-  of.coupling = of.coupling_moment * per_inertia;
-  of.inertia = m.bb + m.bp * of.coupling;
-  of.moment = h_b + of.aero.stroke_moment + m.bp * of.free_acceleration;
-  return of;
+  wings.free_acceleration = wings.pitching_moment * per_inertia;
+  wings.coupling = wings.coupling_moment * per_inertia;
+  wings.inertia = m.bb + m.bp * wings.coupling;
+  wings.moment = h_b + wings.aero.stroke_moment + m.bp * wings.free_acceleration;
+  return wings;
 }
 
 /// Momentum of the air that moves with the wings, normal to the chord [N s], with \f$m_r\f$ and \f$m_p\f$ of
@@ -319,8 +319,8 @@ WingsAtPitch<S> wings_at_pitch(const BladeElement<S>& w, const PitchingWings<S>&
 /// p_\mathrm{n} = m_r \dot\beta \cos\psi + m_p \dot\psi
 /// \f]
 template <Scalar S>
-S air_momentum(const PitchingWings<S>& p, const PitchState<S>& at) {
-  return p.air.r * at.stroke_velocity * at.cos_psi + p.air.p * at.velocity;
+S air_momentum(const PitchingWings<S>& p, const PitchState<S>& state) {
+  return p.air.r * state.stroke_velocity * state.cos_psi + p.air.p * state.velocity;
 }
 
 /// Lift that the added mass's force along the chord takes away where it counts in full [N]: its momentum turns with the
@@ -329,8 +329,8 @@ S air_momentum(const PitchingWings<S>& p, const PitchState<S>& at) {
 /// p_\mathrm{n} \dot\psi \cos\psi
 /// \f]
 template <Scalar S>
-S chordwise_lift(const PitchingWings<S>& p, const PitchState<S>& at) {
-  return air_momentum(p, at) * at.velocity * at.cos_psi;
+S chordwise_lift(const PitchingWings<S>& p, const PitchState<S>& state) {
+  return air_momentum(p, state) * state.velocity * state.cos_psi;
 }
 
 /// Lift of all wings normal to the stroke plane [N] at the accelerations beta'' and psi'' [rad/s2]: that of the forces
@@ -343,11 +343,12 @@ S chordwise_lift(const PitchingWings<S>& p, const PitchState<S>& at) {
 /// \end{aligned}
 /// \f]
 template <Scalar S>
-S lift_at_pitch(const PitchingWings<S>& p, const WingsAtPitch<S>& of, const PitchState<S>& at,
+S lift_at_pitch(const PitchingWings<S>& p, const WingsAtPitch<S>& wings, const PitchState<S>& state,
                 const S& stroke_acceleration, const S& pitch_acceleration) {
-  const S F_am = p.air.r * (stroke_acceleration * at.cos_psi - at.stroke_velocity * at.velocity * at.sin_psi) +
-                 p.air.p * pitch_acceleration;
-  return -(of.aero.normal_force + F_am) * at.sin_psi - p.edge_suction * chordwise_lift(p, at);
+  const S F_am =
+      p.air.r * (stroke_acceleration * state.cos_psi - state.stroke_velocity * state.velocity * state.sin_psi) +
+      p.air.p * pitch_acceleration;
+  return -(wings.aero.normal_force + F_am) * state.sin_psi - p.edge_suction * chordwise_lift(p, state);
 }
 
 }  // namespace wingbeat

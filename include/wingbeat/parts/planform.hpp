@@ -42,9 +42,9 @@ struct Planform {
   S shoulder_distance = S(0);         ///< between the hinges of two wings that share a body [m], >= 0
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.shape, of.length, of.root_chord, of.hub_offset, of.chord_table, of.s2, of.s3, of.chord_ratio, of.s22,
-               of.shoulder_distance);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.shape, self.length, self.root_chord, self.hub_offset, self.chord_table, self.s2, self.s3,
+               self.chord_ratio, self.s22, self.shoulder_distance);
   }
 };
 
@@ -90,8 +90,8 @@ void visit_table(const std::vector<std::pair<double, double>>& table, const Visi
     const auto [x1, c1] = table[row];
     const double half = 0.5 * (x1 - x0), mid = 0.5 * (x0 + x1);
     constexpr double node = 0.77459666924148337704;  // sqrt(3/5)
-    for (const auto& [at, weight] : {std::pair{-node, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {node, 5.0 / 9.0}}) {
-      const double x = mid + half * at;
+    for (const auto& [share, weight] : {std::pair{-node, 5.0 / 9.0}, {0.0, 8.0 / 9.0}, {node, 5.0 / 9.0}}) {
+      const double x = mid + half * share;
       visit(weight * half, c0 + (c1 - c0) * (x - x0) / (x1 - x0), x);
     }
   }
@@ -203,8 +203,9 @@ S chord_at(const Planform<S>& p, double part) {
   if (p.shape == PlanformShape::rectangle) return detail::root_chord_of(p);
   const auto& rows = p.chord_table;
   const double x = part * rows.back().first;
-  const auto next = std::lower_bound(rows.begin() + 1, rows.end() - 1, x,
-                                     [](const std::pair<double, double>& row, double at) { return row.first < at; });
+  const auto next =
+      std::lower_bound(rows.begin() + 1, rows.end() - 1, x,
+                       [](const std::pair<double, double>& row, double station) { return row.first < station; });
   const auto [x0, c0] = *(next - 1);
   return S(c0 + (next->second - c0) * (x - x0) / (next->first - x0));
 }
@@ -236,8 +237,8 @@ struct PitchChordMoments {
   S s40 = S(0);  ///< [m5], >= 0
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.s21, of.s22, of.s30, of.s31, of.s40);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.s21, self.s22, self.s30, self.s31, self.s40);
   }
 };
 
@@ -254,29 +255,29 @@ struct PitchChordMoments {
 template <Scalar S>
 PitchChordMoments<S> pitch_chord_moments(const Planform<S>& p, const S& count) {
   const S R = p.length, d = p.hub_offset;
-  PitchChordMoments<S> of;
-  of.s22 = squared_chord_moment(p, count);
+  PitchChordMoments<S> moments;
+  moments.s22 = squared_chord_moment(p, count);
   if (p.shape == PlanformShape::tabulated) {
     detail::visit_table(p.chord_table, [&](double weight, double chord, double x) {
       const double c2 = weight * chord * chord, c3 = c2 * chord;
-      of.s21 = of.s21 + S(c2) * (S(x) + d);
-      of.s30 = of.s30 + S(c3);
-      of.s31 = of.s31 + S(c3) * (S(x) + d);
-      of.s40 = of.s40 + S(c3 * chord);
+      moments.s21 = moments.s21 + S(c2) * (S(x) + d);
+      moments.s30 = moments.s30 + S(c3);
+      moments.s31 = moments.s31 + S(c3) * (S(x) + d);
+      moments.s40 = moments.s40 + S(c3 * chord);
     });
   } else {
     const S c = detail::root_chord_of(p), c2 = c * c, c3 = c2 * c;
     const bool elliptic = p.shape == PlanformShape::semi_ellipse;
-    of.s21 = c2 * R * (elliptic ? S(0.25 * R + 2.0 / 3.0 * d) : S(0.5 * R + d));
-    of.s30 = c3 * R * S(elliptic ? 3.0 / 16.0 * pi : 1.0);
-    of.s31 = c3 * R * (elliptic ? S(0.2 * R + 3.0 / 16.0 * pi * d) : S(0.5 * R + d));
-    of.s40 = c3 * c * R * S(elliptic ? 8.0 / 15.0 : 1.0);
+    moments.s21 = c2 * R * (elliptic ? S(0.25 * R + 2.0 / 3.0 * d) : S(0.5 * R + d));
+    moments.s30 = c3 * R * S(elliptic ? 3.0 / 16.0 * pi : 1.0);
+    moments.s31 = c3 * R * (elliptic ? S(0.2 * R + 3.0 / 16.0 * pi * d) : S(0.5 * R + d));
+    moments.s40 = c3 * c * R * S(elliptic ? 8.0 / 15.0 : 1.0);
   }
-  of.s21 = count * of.s21;
-  of.s30 = count * of.s30;
-  of.s31 = count * of.s31;
-  of.s40 = count * of.s40;
-  return of;
+  moments.s21 = count * moments.s21;
+  moments.s30 = count * moments.s30;
+  moments.s31 = count * moments.s31;
+  moments.s40 = count * moments.s40;
+  return moments;
 }
 
 }  // namespace wingbeat

@@ -26,8 +26,8 @@ struct SliderCrank {
   Formulation formulation = Formulation::rod_force;
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.crank_radius, of.rod_length, of.hinge_offset, of.mid_stroke_height, of.formulation);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.crank_radius, self.rod_length, self.hinge_offset, self.mid_stroke_height, self.formulation);
   }
 };
 
@@ -101,10 +101,10 @@ CrankKinematics<S> crank_kinematics(const CrankGeometry<S>& geometry, const S& s
   k.stroke_offset = S(0.0);
   k.tan_stroke = tan_beta;
   k.stroke_slope = dy * per_H * cos2_beta;
-  k.stroke_curve = ddy * per_H * cos2_beta - S(2.0) * tan_beta * square(k.stroke_slope);
-  k.wing_lever =
+  k.stroke_second_derivative = ddy * per_H * cos2_beta - S(2.0) * tan_beta * square(k.stroke_slope);
+  k.wing_jacobian =
       c.formulation == Formulation::rod_force ? H * (sin_gamma * tan_beta + cos_gamma) : H * cos_gamma * sec2_beta;
-  k.crank_lever = cos_gamma * dy;
+  k.crank_jacobian = cos_gamma * dy;
   return k;
 }
 

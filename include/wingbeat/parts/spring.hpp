@@ -15,8 +15,8 @@ struct HingeSpring {
   S stiffness = S(0);  ///< k of ONE hinge spring [N m/rad], >= 0
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.stiffness);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.stiffness);
   }
 };
 

@@ -66,8 +66,8 @@ struct StrokeTable {
   S reference_radius = S(0);  ///< r_ref [m], > 0
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.curve, of.scale, of.reference_radius);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.curve, self.scale, self.reference_radius);
   }
 };
 
@@ -97,8 +97,8 @@ CrankKinematics<S> crank_kinematics(const StrokeTable<S>& t, const S& sin_theta,
     }
     k.stroke_offset = t.scale * beta;
     k.stroke_slope = t.scale * slope;
-    k.stroke_curve = t.scale * S(2.0) * half_curve;
-    k.crank_lever = t.reference_radius * k.stroke_slope;
+    k.stroke_second_derivative = t.scale * S(2.0) * half_curve;
+    k.crank_jacobian = t.reference_radius * k.stroke_slope;
   }
   return k;
 }

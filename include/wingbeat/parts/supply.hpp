@@ -40,8 +40,8 @@ struct Supply {
   Battery<S> battery = {};
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.type, of.voltage, of.frequency, of.duty, of.battery);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.type, self.voltage, self.frequency, self.duty, self.battery);
   }
 };
 

@@ -25,12 +25,12 @@ namespace wingbeat {
 /// \f]
 template <Scalar S>
 struct CrankKinematics {
-  S stroke_offset;  ///< [rad]; 0 of a slider-crank
-  S tan_stroke;     ///< tangent of the stroke angle, less the offset [1]
-  S stroke_slope;   ///< \f$B_1 = \mathrm{d}\beta/\mathrm{d}\theta\f$ [1]
-  S stroke_curve;   ///< \f$B_2 = \mathrm{d}^2\beta/\mathrm{d}\theta^2\f$ [1]
-  S wing_lever;     ///< g: moment on all wings per unit of F [m]
-  S crank_lever;    ///< h: torque on the crank per unit of F [m]; h = g B1 conserves power
+  S stroke_offset;             ///< [rad]; 0 of a slider-crank
+  S tan_stroke;                ///< tangent of the stroke angle, less the offset [1]
+  S stroke_slope;              ///< \f$B_1 = \mathrm{d}\beta/\mathrm{d}\theta\f$ [1]
+  S stroke_second_derivative;  ///< \f$B_2 = \mathrm{d}^2\beta/\mathrm{d}\theta^2\f$ [1]
+  S wing_jacobian;             ///< g: moment on all wings per unit of F [m]
+  S crank_jacobian;            ///< h: torque on the crank per unit of F [m]; h = g B1 conserves power
 };
 
 /// Stroke angle beta [rad]. Apart from the kinematics because only springs and reports need it.
@@ -46,14 +46,14 @@ inline constexpr ParameterKey crank_radius_key{
 
 /// The crank angles at which the stroke velocity of a turning crank changes its sign.
 struct Reversals {
-  static constexpr std::size_t most = 8;
-  std::array<double, most> angle{};  ///< [rad], growing, > 0 and < 2 pi; a reversal at 0 itself is not listed
+  static constexpr std::size_t max_count = 8;
+  std::array<double, max_count> angle{};  ///< [rad], growing, > 0 and < 2 pi; a reversal at 0 itself is not listed
   std::size_t count = 0;
   double first_sign = 1.0;  ///< of d beta / d theta, from crank angle 0 to the first of them
 };
 
 /// The reversals of any transmission, from the sign of d beta / d theta on a grid of crank angles and by bisection: for
-/// those without a closed form. Only the first Reversals::most are found.
+/// those without a closed form. Only the first Reversals::max_count are found.
 template <class T>
 Reversals find_reversals(const T& transmission) {
   constexpr int grid = 720;
@@ -65,7 +65,7 @@ Reversals find_reversals(const T& transmission) {
   double before = start;
   found.first_sign = sign_of(slope(start));
   double sign = found.first_sign;
-  for (int n = 1; n <= grid && found.count < Reversals::most; ++n) {
+  for (int n = 1; n <= grid && found.count < Reversals::max_count; ++n) {
     const double here = n < grid ? two_pi * n / grid : two_pi - start;
     if (sign_of(slope(here)) != sign) {
       found.angle[found.count++] =

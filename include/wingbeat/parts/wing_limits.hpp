@@ -24,8 +24,8 @@ struct WingLimits {
   S stroke_max = S(std::numeric_limits<double>::infinity());
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.reynolds_number_per_speed, of.reynolds_number_min, of.reynolds_number_max, of.stroke_max);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.reynolds_number_per_speed, self.reynolds_number_min, self.reynolds_number_max, self.stroke_max);
   }
 };
 

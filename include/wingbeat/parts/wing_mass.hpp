@@ -17,8 +17,8 @@ struct WingMaterial {
   S rib_count = S(0);      ///< n_r, ribs along the chord that part the length into n_r + 1 equal bays
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.areal_density, of.spar_density, of.rib_density, of.rib_count);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.areal_density, self.spar_density, self.rib_density, self.rib_count);
   }
 };
 

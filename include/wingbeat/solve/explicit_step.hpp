@@ -53,23 +53,26 @@ inline constexpr double e5[stages] =
 // clang-format on
 }  // namespace dop853
 
-/// True of systems that know many places at once: `place(x)` holds all that depends on x alone, `places(x, h, c)` is
-/// that at x + c[n] h, and rates() takes a place as it takes x.
+/// True of systems that compute many configurations at once: `configuration(x)` holds all that depends on x alone,
+/// `configurations(x, h, c)` those at x + c[n] h, and rates() takes a configuration as it takes x.
 template <class System>
-concept KnowsPlaces = requires(const System& system, const typename System::Real& x) { system.place(x); };
+concept HasConfigurations = requires(const System& system, const typename System::Real& x, const double (&c)[1]) {
+  system.configurations(x, x, c);
+};
 
 /// Where a system is at x, as its rates() take it.
 template <class System>
-auto place_at(const System& system, const typename System::Real& x) {
-  if constexpr (KnowsPlaces<System>) {
-    return system.place(x);
+auto configuration_at(const System& system, const typename System::Real& x) {
+  if constexpr (HasConfigurations<System>) {
+    return system.configuration(x);
   } else {
     return x;
   }
 }
 
 template <class System>
-using Place = decltype(place_at(std::declval<const System&>(), std::declval<const typename System::Real&>()));
+using ConfigurationOf =
+    decltype(configuration_at(std::declval<const System&>(), std::declval<const typename System::Real&>()));
 
 /// What a right-hand side returns at one point: dy/dx, and the integrands dq/dx where asked for.
 template <class System>
@@ -83,7 +86,7 @@ struct Rates {
 template <class System>
 struct StepResult {
   typename System::State y;                     ///< state at x + h
-  Place<System> end;                            ///< x + h
+  ConfigurationOf<System> end;                  ///< x + h
   typename System::Quadrature dq;               ///< integrals over the step; meaningful with quadratures only
   typename System::State error3;                ///< error of the embedded third-order formula
   typename System::State error5;                ///< error of the embedded fifth-order formula
@@ -100,13 +103,14 @@ namespace detail {
 
 /// The stages' places.
 template <class System>
-auto stage_places(const System& system, const typename System::Real& x, const typename System::Real& h) {
-  if constexpr (KnowsPlaces<System>) {
-    return system.places(x, h, dop853::c);
+auto stage_configurations(const System& system, const typename System::Real& x, const typename System::Real& h) {
+  if constexpr (HasConfigurations<System>) {
+    return system.configurations(x, h, dop853::c);
   } else {
-    std::array<typename System::Real, dop853::stages> places;
-    for (std::size_t stage = 0; stage < places.size(); ++stage) places[stage] = x + dop853::c[stage] * h;
-    return places;
+    std::array<typename System::Real, dop853::stages> configurations;
+    for (std::size_t stage = 0; stage < configurations.size(); ++stage)
+      configurations[stage] = x + dop853::c[stage] * h;
+    return configurations;
   }
 }
 
@@ -133,7 +137,7 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
   constexpr std::size_t stages = dop853::stages;
 
   StepResult<System> result;
-  const auto places = detail::stage_places(system, x, h);
+  const auto configurations = detail::stage_configurations(system, x, h);
   std::array<typename System::State, stages> k;
   k[0] = first.dy;
   if constexpr (quadratures) {
@@ -146,24 +150,24 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
   detail::unroll(std::make_index_sequence<stages - 1>{}, [&](auto before) {
     constexpr std::size_t stage = before + 1;
     if (!result.admissible) return;
-    typename System::State at = y;
+    typename System::State moved = y;
     for (std::size_t n = 0; n < states; ++n) {
       Real sum = dop853::a[stage][0] * k[0][n];
       detail::unroll(std::make_index_sequence<stage - 1>{}, [&](auto earlier) {
         constexpr std::size_t j = earlier + 1;
         if constexpr (dop853::a[stage][j] != 0.0) sum = sum + dop853::a[stage][j] * k[j][n];
       });
-      at[n] = at[n] + h * sum;
+      moved[n] = moved[n] + h * sum;
     }
-    if (!system.admissible(at)) {
+    if (!system.admissible(moved)) {
       result.admissible = false;
       return;
     }
     const Rates<System> rates =
-        system.template rates < quadratures && dop853::b[stage] != 0.0 > (places[stage], at, branch);
+        system.template rates < quadratures && dop853::b[stage] != 0.0 > (configurations[stage], moved, branch);
     k[stage] = rates.dy;
     if constexpr (quadratures && stage == stages - 1) {
-      result.last_stage = at;
+      result.last_stage = moved;
       result.last_slope = rates.dy;
     }
     // The first stages are of too low an order to tell.
@@ -209,7 +213,7 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
       result.integral_error5[q] = h * result.integral_error5[q];
     }
   }
-  result.end = places[stages - 1];
+  result.end = configurations[stages - 1];
   result.admissible = system.admissible(result.y);
   return result;
 }
@@ -224,26 +228,26 @@ inline bool is_little(double by, double h, double tolerance) {
 /// rates at x. What integrals gain is added to `*gained`. False, nothing changed, where that is not admissible.
 template <bool quadratures, class System>
 bool move_a_little(const System& system, double x, double by, const typename System::Signs& branch,
-                   const Rates<System>& first, typename System::State& y, Place<System>& place,
+                   const Rates<System>& first, typename System::State& y, ConfigurationOf<System>& configuration,
                    typename System::Quadrature* gained = nullptr) {
-  typename System::State at = y;
-  Place<System> there = place;
+  typename System::State moved = y;
+  ConfigurationOf<System> there = configuration;
   std::array<Rates<System>, 4> r;
   r[0] = first;
   for (std::size_t stage = 1; stage < 4; ++stage) {
     const double part = stage == 3 ? by : 0.5 * by;
-    for (std::size_t n = 0; n < y.size(); ++n) at[n] = y[n] + part * r[stage - 1].dy[n];
-    if (!system.admissible(at)) return false;
-    if (stage != 2) there = place_at(system, x + part);
-    r[stage] = system.template rates<quadratures>(there, at, branch);
+    for (std::size_t n = 0; n < y.size(); ++n) moved[n] = y[n] + part * r[stage - 1].dy[n];
+    if (!system.admissible(moved)) return false;
+    if (stage != 2) there = configuration_at(system, x + part);
+    r[stage] = system.template rates<quadratures>(there, moved, branch);
   }
   const auto mean = [](double a, double b, double c, double d) { return (a + 2.0 * (b + c) + d) / 6.0; };
   for (std::size_t n = 0; n < y.size(); ++n) {
-    at[n] = y[n] + by * mean(r[0].dy[n], r[1].dy[n], r[2].dy[n], r[3].dy[n]);
+    moved[n] = y[n] + by * mean(r[0].dy[n], r[1].dy[n], r[2].dy[n], r[3].dy[n]);
   }
-  if (!system.admissible(at)) return false;
-  y = at;
-  place = there;
+  if (!system.admissible(moved)) return false;
+  y = moved;
+  configuration = there;
   if constexpr (quadratures) {
     for (std::size_t q = 0; q < gained->size(); ++q) {
       (*gained)[q] += by * mean(r[0].dq[q], r[1].dq[q], r[2].dq[q], r[3].dq[q]);

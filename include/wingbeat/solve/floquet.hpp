@@ -94,9 +94,9 @@ auto stiff_factor(const System& system, const JetSystem& jets, const Iterate<Sys
     std::array<double, unknowns * n> trajectory;  // of the derivative at the stages
     for (std::size_t j = 0; j < stages; ++j) {
       const double x = step.x + (piece + tableau.c[j]) * h;
-      const typename System::State at = evaluate_inside<false>(system, iterate, step, x).y;
+      const typename System::State state = evaluate_inside<false>(system, iterate, step, x).y;
       typename JetSystem::State y;
-      for (std::size_t k = 0; k < n; ++k) y[k] = typename JetSystem::Real(at[k], int(k));
+      for (std::size_t k = 0; k < n; ++k) y[k] = typename JetSystem::Real(state[k], int(k));
       const Rates<JetSystem> rates = jets.template rates<false>(typename JetSystem::Real(x), y, signs);
       for (std::size_t i = 0; i < stages; ++i) {
         for (std::size_t k = 0; k < n * n; ++k) {
@@ -140,9 +140,9 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Iterat
     return iterate.steps[k].y;
   };
   const auto start_of = [&](std::size_t k) {
-    const typename System::State at = before(k);
+    const typename System::State start = before(k);
     State y;
-    for (std::size_t j = 0; j < n; ++j) y[j] = Real(at[j], int(j));
+    for (std::size_t j = 0; j < n; ++j) y[j] = Real(start[j], int(j));
     reset_map<false>(jets, iterate.steps, k, y, nullptr);
     return y;
   };
@@ -162,9 +162,9 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Iterat
     if (iterate.method == Method::explicit_pair) {
       quickest = std::max(decay(first, step.h), last ? 0.0 : decay(next, step.h));
     }
-    const auto append_derivatives = [&](const State& of) {
+    const auto append_derivatives = [&](const State& state) {
       std::array<double, n * n> factor;
-      for (std::size_t m = 0; m < n * n; ++m) factor[m] = of[m / n].v[Eigen::Index(m % n)];
+      for (std::size_t m = 0; m < n * n; ++m) factor[m] = state[m / n].v[Eigen::Index(m % n)];
       product.append(factor);
     };
     if (quickest > resolved) {

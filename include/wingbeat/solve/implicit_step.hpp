@@ -48,14 +48,14 @@ using AtStages = std::array<T, RadauTableau::stages>;
 /// Where the stages of a step from x are, as the system's rates() take it: all that depends on x alone is the same in
 /// every iteration.
 template <class System>
-auto places_of_stages(const System& system, double x, double h) {
+auto configurations_of_stages(const System& system, double x, double h) {
   const RadauTableau& tableau = radau_tableau();
-  if constexpr (requires { system.places(x, h, tableau.c); }) {
-    return system.places(x, h, tableau.c);
+  if constexpr (requires { system.configurations(x, h, tableau.c); }) {
+    return system.configurations(x, h, tableau.c);
   } else {
-    AtStages<double> places;
-    for (std::size_t i = 0; i < places.size(); ++i) places[i] = x + tableau.c[i] * h;
-    return places;
+    AtStages<double> configurations;
+    for (std::size_t i = 0; i < configurations.size(); ++i) configurations[i] = x + tableau.c[i] * h;
+    return configurations;
   }
 }
 
@@ -157,12 +157,12 @@ double move_stages(const std::array<double, unknowns>& update, const State& scal
   return change;
 }
 
-/// The states at the stages of a step from (x, y), where the rates are `dy`, by Newton's method; `places` is where the
-/// stages are. `jacobian` becomes that at the start, `rates` those of the last iteration, without integrands. False
-/// where it does not converge or leaves the admissible region.
-template <class System, class Places>
-bool solve_stages(const System& system, double x, const Places& places, const typename System::State& y, double h,
-                  const typename System::Signs& branch, const typename System::State& dy,
+/// The states at the stages of a step from (x, y), where the rates are `dy`, by Newton's method; `configurations` is
+/// where the stages are. `jacobian` becomes that at the start, `rates` those of the last iteration, without integrands.
+/// False where it does not converge or leaves the admissible region.
+template <class System, class Configurations>
+bool solve_stages(const System& system, double x, const Configurations& configurations, const typename System::State& y,
+                  double h, const typename System::Signs& branch, const typename System::State& dy,
                   StateJacobian<System>& jacobian, AtStages<typename System::State>& stage,
                   AtStages<Rates<System>>& rates) {
   using State = typename System::State;
@@ -182,14 +182,14 @@ bool solve_stages(const System& system, double x, const Places& places, const ty
     AtStages<State> slope;
     for (std::size_t i = 0; i < stages; ++i) {
       if (!system.admissible(stage[i])) return false;
-      rates[i] = system.template rates<false>(places[i], stage[i], branch);
+      rates[i] = system.template rates<false>(configurations[i], stage[i], branch);
       slope[i] = rates[i].dy;
     }
     // The Jacobian changes along the step: taken at the stages, where they are known roughly, it saves iterations.
     if ((iteration == 1 && before > 1e-7) || (iteration > 1 && rate > 0.1 && before > 1e-10 && renewed < 4)) {
       ++renewed;
       for (std::size_t i = 0; i < stages; ++i) {
-        jacobians[i] = jacobian_by_differences(system, places[i], stage[i], scale, branch, slope[i]);
+        jacobians[i] = jacobian_by_differences(system, configurations[i], stage[i], scale, branch, slope[i]);
       }
       if (!matrix.set(h, jacobians)) return false;
     }
@@ -201,8 +201,8 @@ bool solve_stages(const System& system, double x, const Places& places, const ty
     // What is left is the next change.
     const bool next_is_rounding = rate < 0.1 && rate * change < 1e-15;
     if (change < 1e-15 || next_is_rounding || (iteration > 2 && change < 1e-12 && rate > 0.3)) {
-      for (const State& at : stage) {
-        if (!system.admissible(at)) return false;
+      for (const State& state : stage) {
+        if (!system.admissible(state)) return false;
       }
       return true;
     }
@@ -241,13 +241,13 @@ StepResult<System> implicit_step(const System& system, double x, const typename 
   detail::StateJacobian<System> jacobian;
   detail::AtStages<typename System::State> stage;
   detail::AtStages<Rates<System>> rates;
-  const auto places = detail::places_of_stages(system, x, h);
-  if (!detail::solve_stages(system, x, places, y, h, branch, first.dy, jacobian, stage, rates)) return result;
+  const auto configurations = detail::configurations_of_stages(system, x, h);
+  if (!detail::solve_stages(system, x, configurations, y, h, branch, first.dy, jacobian, stage, rates)) return result;
 
   result.stages = stage;
   result.lowest = detail::lowest_switches<System>(rates, branch);
   result.y = stage[stages - 1];
-  result.end = places[stages - 1];
+  result.end = configurations[stages - 1];
   if constexpr (quadratures) {
     for (std::size_t q = 0; q < result.dq.size(); ++q) {
       result.dq[q] = 0.0;
@@ -255,7 +255,7 @@ StepResult<System> implicit_step(const System& system, double x, const typename 
       result.integral_error5[q] = tableau.start_weight * first.dq[q];
     }
     for (std::size_t j = 0; j < stages; ++j) {
-      rates[j] = system.template rates<true>(places[j], stage[j], branch);
+      rates[j] = system.template rates<true>(configurations[j], stage[j], branch);
       for (std::size_t q = 0; q < result.dq.size(); ++q) {
         result.dq[q] += tableau.a[stages - 1][j] * rates[j].dq[q];
         result.integral_error3[q] += tableau.error3[j] * rates[j].dq[q];
@@ -278,8 +278,8 @@ StepResult<System> implicit_step(const System& system, double x, const typename 
       error5[row] += tableau.state_error5[j] * (stage[j][row] - y[row]);
     }
     for (std::size_t column = 0; column < states; ++column) {
-      const std::size_t at = row * states + column;
-      matrix[at] = (row == column ? 1.0 : 0.0) - h * tableau.start_weight * jacobian[at];
+      const std::size_t entry = row * states + column;
+      matrix[entry] = (row == column ? 1.0 : 0.0) - h * tableau.start_weight * jacobian[entry];
     }
   }
   if (!invert(int(states), matrix)) return result;
@@ -323,8 +323,9 @@ StepResult<Jets> implicit_step(const Jets& jets, const System& system, const typ
     const Rates<System> first = system.template rates<false>(x.a, start, signs);
     detail::StateJacobian<System> of_start;
     detail::AtStages<Rates<System>> last;
-    const auto places = detail::places_of_stages(system, x.a, h.a);
-    if (!detail::solve_stages(system, x.a, places, start, h.a, signs, first.dy, of_start, stage, last)) return result;
+    const auto configurations = detail::configurations_of_stages(system, x.a, h.a);
+    if (!detail::solve_stages(system, x.a, configurations, start, h.a, signs, first.dy, of_start, stage, last))
+      return result;
   }
 
   // The rates by the states, with which Newton's method goes on where the stages are not yet exact.
@@ -374,8 +375,8 @@ StepResult<Jets> implicit_step(const Jets& jets, const System& system, const typ
     }
   }
   matrix.solve(moved);
-  const auto follow = [&](std::size_t i, Real& of, const typename ByState::Real& slope) {
-    for (std::size_t n = 0; n < states; ++n) of.v += slope.v[Eigen::Index(n)] * moved[i * states + n];
+  const auto follow = [&](std::size_t i, Real& sum, const typename ByState::Real& slope) {
+    for (std::size_t n = 0; n < states; ++n) sum.v += slope.v[Eigen::Index(n)] * moved[i * states + n];
   };
   for (std::size_t i = 0; i < stages; ++i) {
     for (std::size_t w = 0; w < rates[i].switches.size(); ++w) {

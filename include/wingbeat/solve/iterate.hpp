@@ -76,7 +76,7 @@ typename System::State repeat_iterate(const System& system, const typename Syste
 template <class System>
 const Step<System>& step_at(const Iterate<System>& iterate, double x) {
   const auto after = std::upper_bound(iterate.steps.begin(), iterate.steps.end(), x,
-                                      [](double at, const Step<System>& step) { return at < step.x; });
+                                      [](double position, const Step<System>& step) { return position < step.x; });
   return after == iterate.steps.begin() ? iterate.steps.front() : *(after - 1);
 }
 

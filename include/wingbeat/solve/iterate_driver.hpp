@@ -143,7 +143,7 @@ class IterateDriver {
     iterate_.error_sum = 0.0;
     x_ = 0.0;
     y_ = start;
-    place_ = place_at(system_, x_);
+    configuration_ = configuration_at(system_, x_);
     if constexpr (requires { system_.start_signs(start); }) {
       signs_ = system_.start_signs(start);
     } else {
@@ -152,10 +152,10 @@ class IterateDriver {
     // A switch may depend on the signs of those before it.
     for (std::size_t k = 0; k < switch_count; ++k) {
       if (jumps(system_, k)) continue;
-      const Rates<System> rates = system_.template rates<quadratures>(place_, y_, signs_);
+      const Rates<System> rates = system_.template rates<quadratures>(configuration_, y_, signs_);
       signs_[k] = rates.switches[k] >= 0.0 ? 1.0 : -1.0;
     }
-    first_ = system_.template rates<quadratures>(place_, y_, signs_);
+    first_ = system_.template rates<quadratures>(configuration_, y_, signs_);
     remember_switch_scale(first_);
     integral_scale_ = {};
     remember_integral_scale();
@@ -227,14 +227,14 @@ class IterateDriver {
     remember_switch_scale(last);
     std::size_t crossed = switch_count;
     if (flips_here_ >= 2 * int(switch_count)) return crossed;
-    double at = 2.0;
+    double earliest = 2.0;
     for (std::size_t k = 0; k < located_; ++k) {
       if (last.switches[k] * signs_[k] >= 0.0 || std::abs(last.switches[k]) < 1e-15 * switch_scale_[k]) continue;
       if (k == ended_on) continue;
       const double from = std::max(0.0, first_.switches[k] * signs_[k]);
       const double fraction = from / (from + std::abs(last.switches[k]));
-      if (fraction < at) {
-        at = fraction;
+      if (fraction < earliest) {
+        earliest = fraction;
         crossed = k;
       }
     }
@@ -274,11 +274,11 @@ class IterateDriver {
       const StepResult<System> again =
           take_step<quadratures>(options_.method, system_, x_, y_, shorter, signs_, first_);
       if (!again.admissible) return false;
-      const Rates<System> at = system_.template rates<quadratures>(again.end, again.y, signs_);
-      if (at.switches[k] * signs_[k] >= 0.0) continue;
+      const Rates<System> end_rates = system_.template rates<quadratures>(again.end, again.y, signs_);
+      if (end_rates.switches[k] * signs_[k] >= 0.0) continue;
       step = shorter;
       result = again;
-      last = at;
+      last = end_rates;
       return true;
     }
     return false;
@@ -290,7 +290,7 @@ class IterateDriver {
       const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
       return system_.template rates<false>(x_ + t * step, y, signs_).switches[k] * signs_[k];
     };
-    return minimise(value, 0.0, 1.0, 1e-3).at;
+    return minimise(value, 0.0, 1.0, 1e-3).argument;
   }
 
   /// Shortens the step to end where switch k changes sign; false if that is at its very start.
@@ -298,9 +298,9 @@ class IterateDriver {
     const double whole = step;
     const State y1 = result.y;
     const State dy1 = last.dy;
-    const auto value = [&](double at) {
-      const State y = hermite<System>(y_, first_.dy, y1, dy1, whole, at / whole);
-      return system_.template rates<false>(x_ + at, y, signs_).switches[k] * signs_[k];
+    const auto value = [&](double advance) {
+      const State y = hermite<System>(y_, first_.dy, y1, dy1, whole, advance / whole);
+      return system_.template rates<false>(x_ + advance, y, signs_).switches[k] * signs_[k];
     };
     // Illinois: keeps the bracket, converges superlinearly.
     double lo = 0.0, hi = whole;
@@ -312,15 +312,15 @@ class IterateDriver {
       if (f_lo <= 0.0) return false;
     }
     const double close_enough = 0.1 * position_tolerance_;
-    double at = hi, slope = (f_hi - f_lo) / whole;
+    double root = hi, slope = (f_hi - f_lo) / whole;
     for (int iteration = 0, side = 0; iteration < 60 && hi - lo > close_enough; ++iteration) {
       // A start next to a zero of the same switch would draw the secant there.
       const bool from_zero = f_lo < 0.1 * std::abs(f_hi) && iteration < 20 && hi - lo > 0.1 * whole;
       const double next = from_zero ? 0.5 * (lo + hi) : (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
       const double f = value(next);
-      if (next != at && iteration > 0) slope = (f - (at == hi ? f_hi : f_lo)) / (next - at);
-      const double moved = std::abs(next - at);
-      at = next;
+      if (next != root && iteration > 0) slope = (f - (root == hi ? f_hi : f_lo)) / (next - root);
+      const double moved = std::abs(next - root);
+      root = next;
       if (f < 0.0) {
         hi = next;
         f_hi = f;
@@ -334,13 +334,13 @@ class IterateDriver {
       }
       if (f == 0.0 || (iteration > 0 && !from_zero && moved < close_enough)) break;
     }
-    if (at < 1e-3 * position_tolerance_) return false;
+    if (root < 1e-3 * position_tolerance_) return false;
     // The Hermite state is of lower order than the step: correct with steps that end at the switch.
     const int corrections = jumps(system_, k) ? 12 : 4;
     double value_before = 0.0, moved = 0.0;
     for (int correction = 0; correction < corrections; ++correction) {
-      if (correction == 0 || !move_end(k, at, step, result, last)) {
-        step = at;
+      if (correction == 0 || !move_end(k, root, step, result, last)) {
+        step = root;
         result = take_step<quadratures>(options_.method, system_, x_, y_, step, signs_, first_);
         last = system_.template rates<quadratures>(result.end, result.y, signs_);
       }
@@ -349,8 +349,8 @@ class IterateDriver {
         slope = (value_before - signed_value) / moved;
       }
       const double off = slope != 0.0 ? signed_value / slope : 0.0;
-      if (std::abs(off) <= position_tolerance(k) || at - off <= 0.0) break;
-      at -= off;
+      if (std::abs(off) <= position_tolerance(k) || root - off <= 0.0) break;
+      root -= off;
       moved = off;
       value_before = signed_value;
     }
@@ -381,7 +381,7 @@ class IterateDriver {
     iterate_.largest_step = std::max(iterate_.largest_step, step);
     x_ = x1;
     y_ = result.y;
-    place_ = result.end;
+    configuration_ = result.end;
     first_ = last;
     flips_here_ = 0;
     remember_integral_scale();
@@ -413,7 +413,7 @@ class IterateDriver {
     iterate_.switches.push_back({x_, k});
     // The other switches may have jumped over their zeros with the rates.
     if (jumps(system_, k)) settle_signs(system_, x_, y_, signs_);
-    first_ = system_.template rates<quadratures>(place_, y_, signs_);
+    first_ = system_.template rates<quadratures>(configuration_, y_, signs_);
   }
 
   void pass_fixed_nodes() {
@@ -422,7 +422,7 @@ class IterateDriver {
       signs_[k] = -signs_[k];
       ++fixed_;
     }
-    first_ = system_.template rates<quadratures>(place_, y_, signs_);
+    first_ = system_.template rates<quadratures>(configuration_, y_, signs_);
   }
 
   const System& system_;
@@ -436,7 +436,7 @@ class IterateDriver {
   std::size_t fixed_ = 0;
   int flips_here_ = 0;
   double x_ = 0.0;
-  Place<System> place_;  ///< at x_
+  ConfigurationOf<System> configuration_;  ///< at x_
   State y_;
   Signs signs_;
   Rates<System> first_;

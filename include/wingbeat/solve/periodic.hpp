@@ -31,7 +31,7 @@ struct WorkBudget {
   bool spent() const { return used >= limit; }
   long left() const { return spent() ? 0 : limit - used; }
   /// A part of what is left, of at most `most`; whoever spends it adds what was used.
-  WorkBudget part(long most) const { return {std::min(most, left()), 0}; }
+  WorkBudget part(long max_evaluations) const { return {std::min(max_evaluations, left()), 0}; }
 
   // What else takes, in steps of the explicit pair.
   static constexpr long implicit_step = 8;
@@ -65,7 +65,7 @@ typename System::State scaled_distances(const System& system, const typename Sys
 template <class System>
 double scaled_distance(const System& system, const typename System::State& a, const typename System::State& b) {
   double distance = 0.0;
-  for (const double of : scaled_distances(system, a, b)) distance = std::max(distance, of);
+  for (const double scaled : scaled_distances(system, a, b)) distance = std::max(distance, scaled);
   return distance;
 }
 
@@ -78,7 +78,7 @@ double close_on_mesh(const System& system, Iterate<System>& iterate, double tole
                      bool& grazes) {
   typename System::State y = iterate.end;
   double apart = scaled_distance(system, y, iterate.steps.front().y);
-  Place<System> place = place_at(system, iterate.steps.front().x);
+  ConfigurationOf<System> configuration = configuration_at(system, iterate.steps.front().x);
   for (std::size_t n = 0; n < iterate.steps.size() && apart > tolerance; ++n) {
     Step<System>& step = iterate.steps[n];
     typename System::Quadrature gained{};
@@ -87,14 +87,14 @@ double close_on_mesh(const System& system, Iterate<System>& iterate, double tole
       for (std::size_t q = 0; q < gained.size(); ++q) iterate.steps[n - 1].dq[q] += gained[q];
     }
     step.y = y;
-    step.first = system.template rates<true>(place, y, step.signs);
+    step.first = system.template rates<true>(configuration, y, step.signs);
     const StepResult<System> result =
         take_step<true>(iterate.method, system, step.x, y, step.h, step.signs, step.first);
     if (!result.admissible) return std::numeric_limits<double>::infinity();
     step.dq = result.dq;
     if (iterate.method == Method::radau) iterate.stages[n] = result.stages;
     y = result.y;
-    place = result.end;
+    configuration = result.end;
     for (std::size_t k = 0; k < result.lowest.size(); ++k) {
       grazes = grazes || result.lowest[k] < -position_error * iterate.switch_scale[k];
     }

@@ -59,7 +59,7 @@ struct AllocationMap {
   AllocationInput input;
   std::vector<AllocationPoint> points;
   AllocationPoint slope;  ///< by the input at the operating point, exact derivatives [.../V or .../1]
-  /// The same from two pairs of points around the operating point, one and two steps away, by Richardson's
+  /// The slope from two pairs of points around the operating point, one and two steps away, by Richardson's
   /// extrapolation, and what that may be off by: how far the slopes of both pairs are apart, times the step their
   /// curvatures, and the tolerance of the points. The step is that of the map. Where the slope is further off, the map
   /// has a kink or jumps between its points, which no error estimate from them alone can show (a map that is odd about
@@ -85,6 +85,6 @@ inline constexpr AllocationSlope allocation_slopes[] = {
 /// The maps that the vehicle has, in the order of AllocationInput, about an operating point that flaps: voltages from
 /// half to 1.3 times its own, differences up to half of it, biases up to a fifth, splits up to 0.3. A pwm supply's
 /// voltage is its mean. The motor stays at the temperatures of the operating point, as in the linear model.
-std::vector<AllocationMap> allocation_maps(const Linearisation& at, double hinge_offset = 0.0);
+std::vector<AllocationMap> allocation_maps(const Linearisation& linearisation, double hinge_offset = 0.0);
 
 }  // namespace wingbeat

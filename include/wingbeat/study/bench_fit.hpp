@@ -76,7 +76,7 @@ inline constexpr std::pair<const char*, Loss> names_of<Loss>[] = {
 
 /// Where a robust loss may turn from square to robust [standard deviations]: further in too few values carry the fit,
 /// further out outliers do.
-inline constexpr double least_loss_scale = 1.0, most_loss_scale = 4.0;
+inline constexpr double min_loss_scale = 1.0, max_loss_scale = 4.0;
 
 struct BenchFit {
   Design<double> design;  ///< with the springs of the logs that have them

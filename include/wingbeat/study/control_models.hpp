@@ -11,9 +11,9 @@
 namespace wingbeat {
 
 struct ControlOptions {
-  RunOptions at = {};         ///< the operating point
-  int step_cycles = 0;        ///< of the step responses; 0: see linear_model_of()
-  double hinge_offset = 0.0;  ///< from the body's middle plane to either stroke axis [m], >= 0
+  RunOptions operating_point = {};  ///< the operating point
+  int step_cycles = 0;              ///< of the step responses; 0: see linear_model_of()
+  double hinge_offset = 0.0;        ///< from the body's middle plane to either stroke axis [m], >= 0
   bool allocation_maps = true;
 };
 

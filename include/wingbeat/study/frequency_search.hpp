@@ -47,7 +47,7 @@ struct SearchFinding {
     too_low_at_onset,    ///< the same where it starts to flap; below, status with evidence
     too_high             ///< most; last_voltage; of a lift `limits`, where they end the search there
   };
-  struct Place {
+  struct VoltagePoint {
     double voltage;  ///< [V]
     double value;    ///< of what is sought [Hz or N]
   };
@@ -55,7 +55,7 @@ struct SearchFinding {
   Sought sought = Sought::frequency;
   double target = absent;  ///< [Hz or N]
   SearchRange range = SearchRange::domain;
-  std::optional<Place> at = {}, least = {}, most = {};
+  std::optional<VoltagePoint> point = {}, min_point = {}, max_point = {};
   double last_voltage = absent;                     ///< highest tried [V]
   double stroke_amplitude = absent;                 ///< [rad]
   double highest_frequency = absent;                ///< [Hz]: highest_frequency()

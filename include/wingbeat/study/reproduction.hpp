@@ -30,7 +30,7 @@ Design<double> design_of(const SpringPair& pair, const FlappingCase& which);
 
 /// Metrics along an axis; all absent where the vehicle does not flap, or not at the frequency.
 struct TrendCurve {
-  FlappingCase of;
+  FlappingCase flapping_case;
   double crank_radius = absent;  ///< of the curve [m], where it tells curves apart
   std::vector<Metrics<double>> metrics;
   std::vector<DomainStatus> domain;  ///< of each point; none() where there are no metrics
@@ -42,7 +42,7 @@ struct TrendSet {
 
 /// A steady cycle in air.
 struct CycleCase {
-  FlappingCase of;
+  FlappingCase flapping_case;
   RunResult run;
   /// Power into wings and springs [W] of each row: positive is stored, negative returned. F g beta' - M_aero beta',
   /// which is (N_w J_w beta'' + N_w k beta) beta' of eq (23).

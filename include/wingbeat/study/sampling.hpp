@@ -32,13 +32,13 @@ struct PseudoRandom {
 class ScrambledSobol {
  public:
   /// The largest number of samples: beyond it they would repeat.
-  static constexpr std::uint64_t most = std::uint64_t(1) << 32;
+  static constexpr std::uint64_t max_samples = std::uint64_t(1) << 32;
   static constexpr std::size_t max_dimensions = 100;
 
   /// Throws ParameterError for more dimensions than max_dimensions.
   ScrambledSobol(std::size_t dimensions, std::uint64_t seed);
 
-  /// Coordinate of a sample, between 0 and 1; index < most.
+  /// Coordinate of a sample, between 0 and 1; index < max_samples.
   double operator()(std::uint64_t index, std::size_t dimension) const;
 
  private:

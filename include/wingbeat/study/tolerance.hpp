@@ -83,7 +83,7 @@ struct Probability {
   std::uint64_t count = 0;
   double share = 0.0, lower = 0.0, upper = 1.0;
 };
-Probability probability_of(std::uint64_t count, std::uint64_t of);
+Probability probability_of(std::uint64_t count, std::uint64_t total);
 
 /// One output of the study. Moments and percentiles are of the vehicles that flap inside the model's domain, or of all
 /// that flap where extrapolation is allowed.
@@ -91,7 +91,7 @@ struct ToleranceOutput {
   std::string name;  ///< key of the metric; "flaps", "hovers" for 0 or 1
   std::optional<Metric> metric;
   double mean = absent, deviation = absent;
-  double least = absent, p025 = absent, median = absent, p975 = absent, most = absent;
+  double min = absent, p025 = absent, median = absent, p975 = absent, max = absent;
   double linear_mean = absent, linear_deviation = absent;  ///< from the gradient at the parameters' means
   std::vector<double> linear_share;     ///< of the linear variance, by factor; empty where there is none
   std::optional<SobolIndices> indices;  ///< where it varies by more than the tolerance of the orbits

@@ -9,9 +9,9 @@ namespace wingbeat {
 using AlongTheWay = std::function<double(double)>;
 
 struct TrendPeak {
-  double at = 0.0;      ///< place of the highest value; NaN where there is no value anywhere
-  double value = 0.0;   ///< the highest value
-  bool inside = false;  ///< a maximum between its neighbours; false: at an end of the range, or beside places without
+  double argument = 0.0;  ///< place of the highest value; NaN where there is no value anywhere
+  double value = 0.0;     ///< the highest value
+  bool inside = false;    ///< a maximum between its neighbours; false: at an end of the range, or beside places without
 };
 
 /// The highest value between `from` and `to`: the best of `samples` places evenly apart, then refined to a relative

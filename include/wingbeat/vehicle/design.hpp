@@ -44,10 +44,10 @@ struct MotorThermalDesign {
   std::optional<S> time_constant_case;     ///< tau_c of the case over the air [s], for flights
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.resistance_winding, of.resistance_case, of.ambient_temperature, of.reference_temperature,
-               of.copper_temperature_coefficient, of.magnet_temperature_coefficient, of.winding_temperature_max,
-               of.time_constant_winding, of.time_constant_case);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.resistance_winding, self.resistance_case, self.ambient_temperature, self.reference_temperature,
+               self.copper_temperature_coefficient, self.magnet_temperature_coefficient, self.winding_temperature_max,
+               self.time_constant_winding, self.time_constant_case);
   }
 };
 
@@ -62,8 +62,9 @@ struct MotorDesign {
   MotorThermalDesign<S> thermal = {};
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.gear_ratio, of.constants, of.gear_inertia, of.gear_damping, of.gear_efficiency, of.thermal);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.gear_ratio, self.constants, self.gear_inertia, self.gear_damping, self.gear_efficiency,
+               self.thermal);
   }
 };
 
@@ -86,10 +87,10 @@ struct TransmissionDesign {
   StrokeTable<S> table = {};           ///< tabulated
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.crank_radius, of.rod_length, of.hinge_offset, of.stroke_amplitude, of.mid_stroke_height,
-               of.formulation, of.type, of.coupler_length, of.rocker_length, of.ground_length, of.stroke_ratio,
-               of.ground_angle, of.table);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.crank_radius, self.rod_length, self.hinge_offset, self.stroke_amplitude, self.mid_stroke_height,
+               self.formulation, self.type, self.coupler_length, self.rocker_length, self.ground_length,
+               self.stroke_ratio, self.ground_angle, self.table);
   }
 };
 
@@ -100,8 +101,8 @@ struct FrictionDesign {
   S coefficient = S(0);  ///< radius [m], damping [N m s/rad], coefficient [N m s2/rad2] or torque [N m] by law
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.law, of.coefficient);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.law, self.coefficient);
   }
 };
 
@@ -115,8 +116,8 @@ struct SpringDesign {
   std::optional<S> resonance_ratio;  ///< direct: resonance over drive frequency [1]
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.stiffness, of.resonance, of.resonance_ratio);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.stiffness, self.resonance, self.resonance_ratio);
   }
 };
 
@@ -136,9 +137,9 @@ struct WingDesign {
   std::optional<S> mass_product;   ///< P = integral r x dm of one wing [kg m2], only with a pitch hinge
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.count, of.inertia, of.planform, of.resonance, of.areal_density, of.spar_density, of.rib_density,
-               of.rib_count, of.pitch_inertia, of.mass_product);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.count, self.inertia, self.planform, self.resonance, self.areal_density, self.spar_density,
+               self.rib_density, self.rib_count, self.pitch_inertia, self.mass_product);
   }
 };
 
@@ -154,8 +155,9 @@ struct PitchDesign {
   S edge_suction = S(0);         ///< s_L of the added mass [1]
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.stiffness, of.damping, of.stop, of.rotational_lift, of.damping_coefficient, of.edge_suction);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.stiffness, self.damping, self.stop, self.rotational_lift, self.damping_coefficient,
+               self.edge_suction);
   }
 };
 
@@ -173,9 +175,10 @@ struct AerodynamicsDesign {
   std::optional<S> reynolds_number_min, reynolds_number_max;
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.air_density, of.pitch_coefficient, of.coefficients_name, of.coefficients, of.angle_of_attack_min,
-               of.added_mass, of.kinematic_viscosity, of.reynolds_number_min, of.reynolds_number_max);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.air_density, self.pitch_coefficient, self.coefficients_name, self.coefficients,
+               self.angle_of_attack_min, self.added_mass, self.kinematic_viscosity, self.reynolds_number_min,
+               self.reynolds_number_max);
   }
 };
 
@@ -188,8 +191,8 @@ struct ItemMasses {
   std::optional<S> spring;              ///< one hinge spring [kg], >= 0; one for each wing
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.supply, of.motor, of.rod_linear_density, of.spring);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.supply, self.motor, self.rod_linear_density, self.spring);
   }
 };
 
@@ -211,9 +214,10 @@ struct Design {
   AerodynamicsDesign<S> aerodynamics;
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.name, of.mass, of.motors, of.masses, of.bench_torque_constant, of.supply, of.supply_resonance_ratio,
-               of.motor, of.transmission, of.friction, of.spring, of.wing, of.pitch, of.aerodynamics);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.name, self.mass, self.motors, self.masses, self.bench_torque_constant, self.supply,
+               self.supply_resonance_ratio, self.motor, self.transmission, self.friction, self.spring, self.wing,
+               self.pitch, self.aerodynamics);
   }
 };
 

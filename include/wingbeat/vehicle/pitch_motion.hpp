@@ -23,7 +23,7 @@ struct PitchMotion {
   S stop_moment;     ///< with which the wings press on a stop that holds them, towards a positive psi [N m]; else 0
 };
 
-/// The motion at pitch angle psi [rad] and velocity psi' [rad/s]; all else as of instant_at() and motion_on(). Of the
+/// The motion at pitch angle psi [rad] and velocity psi' [rad/s]; all else as of terms_at() and motion_on(). Of the
 /// loads of the air the pitch margin means nothing.
 template <template <Scalar> class V, Scalar S>
 PitchMotion<S> pitch_motion_on(const V<S>& v, const PitchingWings<S>& p, const CrankKinematics<S>& k, const S& N_k_beta,
@@ -34,10 +34,10 @@ PitchMotion<S> pitch_motion_on(const V<S>& v, const PitchingWings<S>& p, const C
   const WingsAtPitch<S> wings = wings_at_pitch(v.wings, p, N_J, state, branch.stroke, pitch.turn, pitch.held);
   const AeroLoads<S> aero{wings.aero.angle_of_attack, S(1.0),           S(0.0),
                           wings.aero.stroke_moment,   wings.aero.power, wings.inertia - N_J};
-  const Instant<S> at =
-      instant_under(v, k, N_k_beta, omega, i, v_t, branch.direction, branch.gear, aero, wings.inertia, wings.moment);
+  const IntermediateTerms<S> terms =
+      terms_under(v, k, N_k_beta, omega, i, v_t, branch.direction, branch.gear, aero, wings.inertia, wings.moment);
   PitchMotion<S> m;
-  m.stroke = motion_on(v, at, i, v_t, branch);
+  m.stroke = motion_on(v, terms, i, v_t, branch);
   m.acceleration = wings.free_acceleration + wings.coupling * m.stroke.stroke_acceleration;
   m.stroke.aero.lift = lift_at_pitch(p, wings, state, m.stroke.stroke_acceleration, m.acceleration);
   m.hinge_loss = wings.hinge.loss;
@@ -64,8 +64,8 @@ struct StopImpact {
 
 /// The impact at pitch angle psi [rad] of a vehicle at shaft speed omega [rad/s], which moves on in `direction` (its
 /// sign), from the pitch velocity psi' to the one `left` [rad/s]. The impulse on the rod, F^ = -e J d omega /
-/// (h + s mu r_e), has the sign of -M_bp (psi' - left); e as in Instant. With \f$\Delta\f$ for what a velocity gains
-/// and \f$\bar\omega = \omega + \tfrac12 \Delta\omega\f$ (model.md section 12):
+/// (h + s mu r_e), has the sign of -M_bp (psi' - left); e as in IntermediateTerms. With \f$\Delta\f$ for what a
+/// velocity gains and \f$\bar\omega = \omega + \tfrac12 \Delta\omega\f$ (model.md section 12):
 /// \f[
 /// \begin{aligned}
 /// e J \Delta\omega &= -\hat F (h + s \mu r_\mathrm{e}), \qquad
@@ -82,25 +82,25 @@ StopImpact<S> stop_impact(const V<S>& v, const PitchingWings<S>& p, const CrankK
   const PitchInertia<S> m = pitch_inertia<S>(p, v.wing_count * v.wing_inertia, state);
   const S taken = velocity - left;
   const S blow = m.bp * taken;
-  const S friction = -sign_of(blow) * direction * v.friction.radius, lever = k.crank_lever + friction;
+  const S friction = -sign_of(blow) * direction * v.friction.radius, lever = k.crank_jacobian + friction;
   const S& J = v.motor.inertia;
   S ratio(1.0);
   if (has_gear_loss(v.motor)) ratio = gear_torque_ratio(v.motor, S(-sign_of(S(blow * lever)) * direction));
   const S eJ = ratio * J;
-  StopImpact<S> of;
-  of.shaft_speed = blow * lever / (eJ * k.wing_lever + m.bb * k.stroke_slope * lever);
-  const S stroke_gain = k.stroke_slope * of.shaft_speed, mean_speed = omega + S(0.5) * of.shaft_speed;
-  of.rod_impulse = (m.bb * stroke_gain - blow) / k.wing_lever;
-  const S rotor_work = -J * of.shaft_speed * mean_speed;
-  of.motor_work = ratio * rotor_work;
-  of.gear_work = (S(1.0) - ratio) * rotor_work;
-  of.friction_work = of.rod_impulse * friction * mean_speed;
-  of.residual_work = of.rod_impulse * (k.crank_lever - k.wing_lever * k.stroke_slope) * mean_speed;
+  StopImpact<S> impact;
+  impact.shaft_speed = blow * lever / (eJ * k.wing_jacobian + m.bb * k.stroke_slope * lever);
+  const S stroke_gain = k.stroke_slope * impact.shaft_speed, mean_speed = omega + S(0.5) * impact.shaft_speed;
+  impact.rod_impulse = (m.bb * stroke_gain - blow) / k.wing_jacobian;
+  const S rotor_work = -J * impact.shaft_speed * mean_speed;
+  impact.motor_work = ratio * rotor_work;
+  impact.gear_work = (S(1.0) - ratio) * rotor_work;
+  impact.friction_work = impact.rod_impulse * friction * mean_speed;
+  impact.residual_work = impact.rod_impulse * (k.crank_jacobian - k.wing_jacobian * k.stroke_slope) * mean_speed;
   const S stored = v.wing_count * v.wing_inertia * stroke_gain * k.stroke_slope * mean_speed;
-  of.stored_work = sign_of(stored) * stored;
-  of.stop_work = S(0.5) * (velocity + left) * (m.pp * taken - m.bp * stroke_gain);
-  of.lift = (p.air.p * taken - p.air.r * stroke_gain * state.cos_psi) * state.sin_psi;
-  return of;
+  impact.stored_work = sign_of(stored) * stored;
+  impact.stop_work = S(0.5) * (velocity + left) * (m.pp * taken - m.bp * stroke_gain);
+  impact.lift = (p.air.p * taken - p.air.r * stroke_gain * state.cos_psi) * state.sin_psi;
+  return impact;
 }
 
 /// The impact where friction holds crank or shaft, and the stroke with it, against the blow.
@@ -111,7 +111,7 @@ StopImpact<S> stop_impact_standing(const V<S>& v, const PitchingWings<S>& p, con
   const PitchInertia<S> m = pitch_inertia<S>(p, v.wing_count * v.wing_inertia, state);
   const S none(0.0);
   return {none,
-          -m.bp * velocity / k.wing_lever,
+          -m.bp * velocity / k.wing_jacobian,
           none,
           none,
           none,

@@ -44,10 +44,10 @@ struct Vehicle {
   WingLimits<S> wing_limits;  ///< beyond which the wings or their coefficients are no longer what the equations say
 
   template <class Self, class Use>
-  static constexpr auto members(Self& of, const Use& use) {
-    return use(of.voltage, of.motor, of.transmission, of.friction, of.spring, of.wing_count, of.wing_inertia, of.wings,
-               of.source_resistance, of.drive_frequency, of.thermal, of.motors, of.pitch, of.load_torque,
-               of.wing_limits);
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.voltage, self.motor, self.transmission, self.friction, self.spring, self.wing_count,
+               self.wing_inertia, self.wings, self.source_resistance, self.drive_frequency, self.thermal, self.motors,
+               self.pitch, self.load_torque, self.wing_limits);
   }
 };
 
@@ -61,77 +61,78 @@ bool pitches(const Vehicle<S>& v) {
 /// The transmission that a design describes.
 template <Scalar S>
 AnyTransmission<S> transmission_of(const TransmissionDesign<S>& t) {
-  AnyTransmission<S> of{};
-  of.type = t.type;
+  AnyTransmission<S> transmission{};
+  transmission.type = t.type;
   switch (t.type) {
     case TransmissionType::slider_crank: {
       const S H = t.hinge_offset ? *t.hinge_offset : hinge_offset_for<S>(*t.stroke_amplitude, t.crank_radius);
       const S y_0 = t.mid_stroke_height ? *t.mid_stroke_height : t.rod_length;
-      of.slider_crank = {t.crank_radius, t.rod_length, H, y_0, t.formulation};
+      transmission.slider_crank = {t.crank_radius, t.rod_length, H, y_0, t.formulation};
       break;
     }
     case TransmissionType::four_bar:
-      of.four_bar = {t.crank_radius, t.coupler_length, t.rocker_length, t.ground_length, t.stroke_ratio};
-      of.four_bar.ground_angle = t.ground_angle ? *t.ground_angle : centred_ground_angle(of.four_bar);
+      transmission.four_bar = {t.crank_radius, t.coupler_length, t.rocker_length, t.ground_length, t.stroke_ratio};
+      transmission.four_bar.ground_angle =
+          t.ground_angle ? *t.ground_angle : centred_ground_angle(transmission.four_bar);
       break;
-    case TransmissionType::tabulated: of.tabulated = t.table; break;
+    case TransmissionType::tabulated: transmission.tabulated = t.table; break;
     case TransmissionType::direct: break;
   }
-  return of;
+  return transmission;
 }
 
 /// What a design says of its motor's temperatures.
 template <Scalar S>
 MotorThermal<S> motor_thermal_of(const MotorThermalDesign<S>& t) {
-  MotorThermal<S> of;
-  if (!t.resistance_winding || !t.resistance_case) return of;
-  of = {*t.resistance_winding,
-        *t.resistance_case,
-        t.ambient_temperature,
-        t.reference_temperature,
-        t.copper_temperature_coefficient,
-        t.magnet_temperature_coefficient,
-        t.winding_temperature_max};
-  return of;
+  MotorThermal<S> thermal;
+  if (!t.resistance_winding || !t.resistance_case) return thermal;
+  thermal = {*t.resistance_winding,
+             *t.resistance_case,
+             t.ambient_temperature,
+             t.reference_temperature,
+             t.copper_temperature_coefficient,
+             t.magnet_temperature_coefficient,
+             t.winding_temperature_max};
+  return thermal;
 }
 
 /// Wings that pitch on the hinges that a design describes, `count` of them, in air of that density [kg/m3].
 template <Scalar S>
 PitchingWings<S> pitching_wings_of(const Design<S>& design, const S& count, const S& air_density) {
   const PitchDesign<S>& p = design.pitch;
-  PitchingWings<S> of;
+  PitchingWings<S> wings;
   PitchHinge<S> hinge{*p.stiffness, p.damping};
   if (p.stop) hinge.stop = *p.stop;
-  of.hinge = hinges_together(hinge, count);
+  wings.hinge = hinges_together(hinge, count);
   if (const std::optional<WingMass<S>> drawn = wing_mass(design.wing)) {
-    of.pitch_inertia = count * drawn->pitch_inertia;
-    of.mass_product = count * drawn->mass_product;
+    wings.pitch_inertia = count * drawn->pitch_inertia;
+    wings.mass_product = count * drawn->mass_product;
   }
-  if (design.wing.pitch_inertia) of.pitch_inertia = count * *design.wing.pitch_inertia;
-  if (design.wing.mass_product) of.mass_product = count * *design.wing.mass_product;
-  of.moments = pitch_chord_moments(design.wing.planform, count);
-  if (design.aerodynamics.added_mass) of.air = pitch_added_mass(air_density, of.moments);
-  if (!p.rotational_lift) of.rotational_coefficient = S(0.0);
-  of.damping_coefficient = p.damping_coefficient;
-  of.edge_suction = p.edge_suction;
-  if (design.aerodynamics.coefficients_name == normal_force_set) of.normal_force = NormalForce::normal_force;
-  return of;
+  if (design.wing.pitch_inertia) wings.pitch_inertia = count * *design.wing.pitch_inertia;
+  if (design.wing.mass_product) wings.mass_product = count * *design.wing.mass_product;
+  wings.moments = pitch_chord_moments(design.wing.planform, count);
+  if (design.aerodynamics.added_mass) wings.air = pitch_added_mass(air_density, wings.moments);
+  if (!p.rotational_lift) wings.rotational_coefficient = S(0.0);
+  wings.damping_coefficient = p.damping_coefficient;
+  wings.edge_suction = p.edge_suction;
+  if (design.aerodynamics.coefficients_name == normal_force_set) wings.normal_force = NormalForce::normal_force;
+  return wings;
 }
 
 /// Limits of the wings that a design describes, `count` of them on one body.
 template <Scalar S>
 WingLimits<S> wing_limits_of(const Design<S>& design, const S& count, Condition condition) {
   const Planform<S>& planform = design.wing.planform;
-  WingLimits<S> of;
-  if (condition == Condition::wingless) return of;
-  if (value_of(count) >= 2.0) of.stroke_max = stroke_where_wings_meet(planform);
+  WingLimits<S> limits;
+  if (condition == Condition::wingless) return limits;
+  if (value_of(count) >= 2.0) limits.stroke_max = stroke_where_wings_meet(planform);
   const AerodynamicsDesign<S>& a = design.aerodynamics;
-  if (condition != Condition::air || !(value_of(a.air_density) > 0.0)) return of;
-  of.reynolds_number_per_speed = reynolds_number_per_speed(planform, a.kinematic_viscosity);
+  if (condition != Condition::air || !(value_of(a.air_density) > 0.0)) return limits;
+  limits.reynolds_number_per_speed = reynolds_number_per_speed(planform, a.kinematic_viscosity);
   const ReynoldsRange published = reynolds_range_of(a.coefficients_name);
-  of.reynolds_number_min = a.reynolds_number_min ? *a.reynolds_number_min : S(published.lowest);
-  of.reynolds_number_max = a.reynolds_number_max ? *a.reynolds_number_max : S(published.highest);
-  return of;
+  limits.reynolds_number_min = a.reynolds_number_min ? *a.reynolds_number_min : S(published.lowest);
+  limits.reynolds_number_max = a.reynolds_number_max ? *a.reynolds_number_max : S(published.highest);
+  return limits;
 }
 
 /// The vehicle that a design describes, in a condition, its motor's constants as stated, at the reference temperature.
@@ -255,9 +256,9 @@ struct Motion {
 /// \f]
 template <template <Scalar> class V, Scalar S>
 S effective_inertia(const V<S>& v, const CrankKinematics<S>& k, const S& s) {
-  const S A = (v.wing_count * v.wing_inertia + v.wings.added_inertia) * k.stroke_slope / k.wing_lever;
+  const S A = (v.wing_count * v.wing_inertia + v.wings.added_inertia) * k.stroke_slope / k.wing_jacobian;
   const S J = has_gear_loss(v.motor) ? S(v.motor.gear_efficiency * v.motor.inertia) : v.motor.inertia;
-  return J + A * (k.crank_lever + s * v.friction.radius);
+  return J + A * (k.crank_jacobian + s * v.friction.radius);
 }
 
 /// Moment of all hinge springs, \f$N_\mathrm{w} k \beta\f$ [N m].
@@ -278,15 +279,15 @@ struct Configuration {
 /// The configuration at a crank angle given by its sine and cosine.
 template <template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Configuration<S> configuration_at(const V<S>& v, const S& sin_theta, const S& cos_theta) {
-  Configuration<S> at;
-  at.kinematics = crank_kinematics(v.transmission, sin_theta, cos_theta);
-  at.spring_moment = spring_moment(v, at.kinematics);
-  return at;
+  Configuration<S> configuration;
+  configuration.kinematics = crank_kinematics(v.transmission, sin_theta, cos_theta);
+  configuration.spring_moment = spring_moment(v, configuration.kinematics);
+  return configuration;
 }
 
 /// What is known of an instant before the sign of the rod force.
 template <Scalar S>
-struct Instant {
+struct IntermediateTerms {
   CrankKinematics<S> kinematics;
   S omega;  ///< crank speed [rad/s]
   MotorLoads<S> motor;
@@ -316,52 +317,53 @@ struct Instant {
 /// \end{aligned}
 /// \f]
 template <template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline Instant<S> instant_under(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
-                                                       const S& omega, const S& i, const S& v_t, const S& direction,
-                                                       const S& gear, const AeroLoads<S>& aero, const S& inertia,
-                                                       const S& moment) {
-  Instant<S> at;
-  at.kinematics = k;
-  at.omega = omega;
-  at.motor = motor_loads(v.motor, v_t, i, omega);
-  at.stroke_velocity = k.stroke_slope * omega;
-  at.aero = aero;
-  at.spring_moment = N_k_beta;
+[[gnu::always_inline]] inline IntermediateTerms<S> terms_under(const V<S>& v, const CrankKinematics<S>& k,
+                                                               const S& N_k_beta, const S& omega, const S& i,
+                                                               const S& v_t, const S& direction, const S& gear,
+                                                               const AeroLoads<S>& aero, const S& inertia,
+                                                               const S& moment) {
+  IntermediateTerms<S> terms;
+  terms.kinematics = k;
+  terms.omega = omega;
+  terms.motor = motor_loads(v.motor, v_t, i, omega);
+  terms.stroke_velocity = k.stroke_slope * omega;
+  terms.aero = aero;
+  terms.spring_moment = N_k_beta;
   // The motor's own friction acts before the gearbox.
   const S mechanism = load_free_friction(v.friction, omega, direction), own = direction * v.motor.friction_torque;
-  at.load_free = mechanism;
-  at.gear_ratio = gear_torque_ratio(v.motor, gear);
-  at.inertia = v.motor.inertia;
-  at.drive = at.motor.torque - at.motor.drag_torque - (mechanism + own);
+  terms.load_free = mechanism;
+  terms.gear_ratio = gear_torque_ratio(v.motor, gear);
+  terms.inertia = v.motor.inertia;
+  terms.drive = terms.motor.torque - terms.motor.drag_torque - (mechanism + own);
   if (has_gear_loss(v.motor)) {
-    at.inertia = at.gear_ratio * v.motor.inertia;
-    at.drive = at.gear_ratio * (at.motor.torque - at.motor.drag_torque - own) - mechanism;
+    terms.inertia = terms.gear_ratio * v.motor.inertia;
+    terms.drive = terms.gear_ratio * (terms.motor.torque - terms.motor.drag_torque - own) - mechanism;
   }
 
-  if constexpr (ScalarTraits<S>::reads_tables) at.drive = at.drive - v.load_torque;
+  if constexpr (ScalarTraits<S>::reads_tables) terms.drive = terms.drive - v.load_torque;
 
   // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
-  at.A_g = inertia * k.stroke_slope;
-  at.C_g = inertia * k.stroke_curve * square(omega) + moment + at.spring_moment;
-  at.force_switch = at.inertia * at.C_g + at.A_g * at.drive;
-  return at;
+  terms.A_g = inertia * k.stroke_slope;
+  terms.C_g = inertia * k.stroke_second_derivative * square(omega) + moment + terms.spring_moment;
+  terms.force_switch = terms.inertia * terms.C_g + terms.A_g * terms.drive;
+  return terms;
 }
 
-/// instant_under() of wings under the pitch law: `stroke` and `direction` are the signs of beta' and omega (model.md
+/// terms_under() of wings under the pitch law: `stroke` and `direction` are the signs of beta' and omega (model.md
 /// section 2), `pitching` and `gear` as in Branch, `every_law` as in aero_loads().
 template <bool every_law = true, template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline Instant<S> instant_at(const V<S>& v, const CrankKinematics<S>& k, const S& N_k_beta,
-                                                    const S& omega, const S& i, const S& v_t, const S& stroke,
-                                                    const S& direction, const S& pitching = S(1.0),
-                                                    const S& gear = S(1.0)) {
+[[gnu::always_inline]] inline IntermediateTerms<S> terms_at(const V<S>& v, const CrankKinematics<S>& k,
+                                                            const S& N_k_beta, const S& omega, const S& i, const S& v_t,
+                                                            const S& stroke, const S& direction,
+                                                            const S& pitching = S(1.0), const S& gear = S(1.0)) {
   const AeroLoads<S> aero = aero_loads<every_law>(v.wings, S(k.stroke_slope * omega), stroke, pitching);
   S inertia = v.wing_count * v.wing_inertia;
   if constexpr (every_law) inertia = inertia + aero.added_inertia;
-  return instant_under<V, S>(v, k, N_k_beta, omega, i, v_t, direction, gear, aero, inertia, aero.moment);
+  return terms_under<V, S>(v, k, N_k_beta, omega, i, v_t, direction, gear, aero, inertia, aero.moment);
 }
 
 /// Rod force and accelerations of an instant, on a given branch (model.md section 2, eqs 1, 5-11, 21). With A, C and
-/// the driving torque D of instant_under(), and \f$s = \operatorname{sign} F \operatorname{sign}\omega\f$ on that
+/// the driving torque D of terms_under(), and \f$s = \operatorname{sign} F \operatorname{sign}\omega\f$ on that
 /// branch:
 /// \f[
 /// \begin{aligned}
@@ -372,39 +374,39 @@ template <bool every_law = true, template <Scalar> class V, Scalar S>
 /// \end{aligned}
 /// \f]
 template <template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const Instant<S>& at, const S& i, const S& v_t,
-                                                  const Branch<S>& branch) {
+[[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const IntermediateTerms<S>& terms, const S& i,
+                                                  const S& v_t, const Branch<S>& branch) {
   Motion<S> m;
-  m.kinematics = at.kinematics;
+  m.kinematics = terms.kinematics;
   const CrankKinematics<S>& k = m.kinematics;
-  const S J = at.inertia;
-  const S g = k.wing_lever;
-  const S omega2 = square(at.omega);
+  const S J = terms.inertia;
+  const S g = k.wing_jacobian;
+  const S omega2 = square(terms.omega);
   // mu r_e |F| sign(omega) = s mu r_e F with s = sign(F) sign(omega), on this branch.
-  const S lever = k.crank_lever + branch.force * branch.direction * v.friction.radius;
-  const S inertia_g = J * g + at.A_g * lever;
+  const S lever = k.crank_jacobian + branch.force * branch.direction * v.friction.radius;
+  const S inertia_g = J * g + terms.A_g * lever;
   const S divisor = inverse_of(inertia_g);
 
   m.current = i;
   m.voltage = v_t;
-  m.stroke_velocity = at.stroke_velocity;
-  m.aero = at.aero;
-  m.force_switch = at.force_switch;
-  m.rod_force = at.force_switch * divisor;
-  m.crank_acceleration = (at.drive * g - at.C_g * lever) * divisor;
-  m.stroke_acceleration = k.stroke_slope * m.crank_acceleration + k.stroke_curve * omega2;
-  m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + at.load_free;
-  m.motor_torque = m.rod_force * k.crank_lever + m.friction_torque;
+  m.stroke_velocity = terms.stroke_velocity;
+  m.aero = terms.aero;
+  m.force_switch = terms.force_switch;
+  m.rod_force = terms.force_switch * divisor;
+  m.crank_acceleration = (terms.drive * g - terms.C_g * lever) * divisor;
+  m.stroke_acceleration = k.stroke_slope * m.crank_acceleration + k.stroke_second_derivative * omega2;
+  m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + terms.load_free;
+  m.motor_torque = m.rod_force * k.crank_jacobian + m.friction_torque;
   if constexpr (ScalarTraits<S>::reads_tables) m.motor_torque = m.motor_torque + v.load_torque;
   m.gear_torque = m.gear_loss = S(0.0);
   if (has_gear_loss(v.motor)) {
     m.gear_torque =
-        branch.direction * (at.motor.torque - at.motor.drag_torque - v.motor.inertia * m.crank_acceleration) -
+        branch.direction * (terms.motor.torque - terms.motor.drag_torque - v.motor.inertia * m.crank_acceleration) -
         v.motor.friction_torque;
-    m.gear_loss = (S(1.0) - at.gear_ratio) * m.gear_torque * branch.direction * at.omega;
+    m.gear_loss = (S(1.0) - terms.gear_ratio) * m.gear_torque * branch.direction * terms.omega;
   }
-  m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + at.spring_moment;
-  m.inductive_voltage = at.motor.inductive_voltage;
+  m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + terms.spring_moment;
+  m.inductive_voltage = terms.motor.inductive_voltage;
   return m;
 }
 
@@ -421,11 +423,11 @@ CrankKinematics<S> direct_kinematics() {
 /// Rod force and accelerations in a configuration, at crank speed omega [rad/s] and current i [A] under the terminal
 /// voltage v_t [V], on a given branch.
 template <template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const Configuration<S>& place, const S& omega,
+[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const Configuration<S>& configuration, const S& omega,
                                                   const S& i, const S& v_t, const Branch<S>& branch) {
-  const Instant<S> at = instant_at(v, place.kinematics, place.spring_moment, omega, i, v_t, branch.stroke,
-                                   branch.direction, branch.pitching, branch.gear);
-  return motion_on(v, at, i, v_t, branch);
+  const IntermediateTerms<S> terms = terms_at(v, configuration.kinematics, configuration.spring_moment, omega, i, v_t,
+                                              branch.stroke, branch.direction, branch.pitching, branch.gear);
+  return motion_on(v, terms, i, v_t, branch);
 }
 
 /// motion_at() at the crank angle theta, given by sine and cosine.

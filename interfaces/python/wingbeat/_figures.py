@@ -54,7 +54,7 @@ ORDERED = ("#b79fd0", "#8d68b5", "#653a92", "#35125e")
 #: Between the formulations the dash decides, never the colour; in points at a line width of 1.
 SOLID: Any = "-"
 DASHED, DOTTED, DASH_DOTTED = (0, (4, 2)), (0, (1, 1.5)), (0, (5, 1.5, 1, 1.5))
-#: Curves that have no meaning of their own, told apart by grey and dash, and a value to compare with.
+#: Curves that have no meaning of their own, distinguished by grey and dash, and a value to compare with.
 FIRST = {"color": COLOURS["ink"], "linestyle": SOLID}
 SECOND = {"color": COLOURS["grey"], "linestyle": DASHED}
 THIRD = {"color": COLOURS["ink"], "linestyle": DOTTED}

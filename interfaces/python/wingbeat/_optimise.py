@@ -190,8 +190,8 @@ class _OwnProblem:
         for term in terms:
             unknown = set(term) - {"metric", "at_least", "at_most"}
             if unknown or not ({"at_least", "at_most"} & set(term)):
-                told = ", ".join(map(str, term))
-                raise refused("constraint", f"a function has at_least, at_most or both, got {told}")
+                shown_term = ", ".join(map(str, term))
+                raise refused("constraint", f"a function has at_least, at_most or both, got {shown_term}")
             for key, sign in (("at_least", -1.0), ("at_most", 1.0)):
                 if key in term:
                     limit = real(term[key])
@@ -267,7 +267,7 @@ def _term(function: Any, result: RunResult, factor: float, limit: float, keys: l
 def _own_optimum(found: dict[str, Any], sign: float, options: dict[str, Any]) -> OwnOptimum:
     starts, same, elsewhere, failed = found["starts"]
     there = found["design"] is not None
-    told: dict[str, Any] = {
+    values: dict[str, Any] = {
         "outcome": found["outcome"],
         "value": sign * found["objective"] if there else None,
         "parameters": dict(zip(found["keys"], found["parameters"])) if there else None,
@@ -287,11 +287,11 @@ def _own_optimum(found: dict[str, Any], sign: float, options: dict[str, Any]) ->
     }
     lines = [f"{found['outcome'].replace('_', ' ')}: {starts} starts, {same} ended in the best optimum, {found['evaluations']} designs"]
     if there:
-        lines = [f"best value: {told['value']:.6g}", *lines]
-        for key, value in told["parameters"].items():
+        lines = [f"best value: {values['value']:.6g}", *lines]
+        for key, value in values["parameters"].items():
             unit = parameters[key].unit
             lines.append(f"  {key:<34}{value:>14.6g} {'' if unit == '1' else unit}".rstrip())
-    made = OwnOptimum({"values": told, "text": "\n".join(lines) + "\n", "design": found["design"]})
+    made = OwnOptimum({"values": values, "text": "\n".join(lines) + "\n", "design": found["design"]})
     made.result = None
     if made.vehicle is not None:
         made.result = RunResult(_core.run(made.vehicle._design, **options), made.vehicle, options)

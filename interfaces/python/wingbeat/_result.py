@@ -194,9 +194,9 @@ class RunResult(WithMetrics):
         )
         drawing = self.vehicle.drawing(self.stroke_amplitude or np.radians(60))
         shown = f"<div style='max-width: 28em'>{drawing}</div>" if drawing else ""
-        told = [f"outside the model's domain: {self.domain_detail}"] if self.domain_detail else []
-        told += [f"warning: {warning}" for warning in self.warnings]
-        remarks = "".join(f"<p>{escape(remark)}</p>" for remark in told)
+        notes = [f"outside the model's domain: {self.domain_detail}"] if self.domain_detail else []
+        notes += [f"warning: {warning}" for warning in self.warnings]
+        remarks = "".join(f"<p>{escape(remark)}</p>" for remark in notes)
         return f"<p><b>{escape(self.status)}</b>: {escape(self.evidence)}</p>{remarks}{shown}<table>{rows}</table>"
 
 

@@ -266,8 +266,8 @@ class Vehicle(Sections):
             value = self[key]
             if isinstance(value, Quantity):
                 return f"{value:.6g} {'' if value.unit == '1' else value.unit}"
-            told = str(value)
-            return told if len(told) < 80 else f"{told[:76]} ..."
+            shown = str(value)
+            return shown if len(shown) < 80 else f"{shown[:76]} ..."
 
         rows = "".join(
             f"<tr><td style='text-align:left'><code>{escape(key)}</code></td>"

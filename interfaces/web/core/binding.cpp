@@ -51,7 +51,7 @@ val attempted(const Work& work) {
   return result;
 }
 
-val told(const Json& json) {
+val json_result(const Json& json) {
   val result = val::object();
   result.set("json", json.dump(-1, ' ', false, Json::error_handler_t::replace));
   return result;
@@ -60,21 +60,21 @@ val told(const Json& json) {
 val with_columns(const Json& json, const Columns& columns) {
   val arrays = val::object();
   for (const auto& [name, numbers] : columns) arrays.set(name, array_of(numbers));
-  val result = told(json);
+  val result = json_result(json);
   result.set("columns", arrays);
   return result;
 }
 
 val read(const std::string& text, const std::string& name, const std::string& tables) {
-  return attempted([&] { return told(read_vehicle(text, name, nlohmann::json::parse(tables))); });
+  return attempted([&] { return json_result(read_vehicle(text, name, nlohmann::json::parse(tables))); });
 }
 
 val values(const std::string& text, const std::string& assignments) {
-  return attempted([&] { return told(values_of(explored(text, texts_of(assignments)))); });
+  return attempted([&] { return json_result(values_of(explored(text, texts_of(assignments)))); });
 }
 
 val edited(const std::string& text, const std::string& assignments) {
-  return attempted([&] { return told({{"toml", edited_design(text, explored(text, texts_of(assignments)))}}); });
+  return attempted([&] { return json_result({{"toml", edited_design(text, explored(text, texts_of(assignments)))}}); });
 }
 
 val solve_one(const std::string& text, const std::string& assignments, const std::string& options) {
@@ -98,8 +98,8 @@ val start_up(const std::string& text, const std::string& assignments, const std:
 val gradients(const std::string& text, const std::string& assignments, const std::string& keys,
               const std::string& options) {
   return attempted([&] {
-    return told(differentiated(explored(text, texts_of(assignments)), texts_of(keys),
-                               options_of(nlohmann::json::parse(options))));
+    return json_result(differentiated(explored(text, texts_of(assignments)), texts_of(keys),
+                                      options_of(nlohmann::json::parse(options))));
   });
 }
 
@@ -122,7 +122,7 @@ val ensemble(const std::string& text, const std::string& assignments, const std:
 }
 
 val motors(const std::string& text, const std::string& assignments, const std::string& catalogue, double gear) {
-  return attempted([&] { return told(motors_for(explored(text, texts_of(assignments)), catalogue, gear)); });
+  return attempted([&] { return json_result(motors_for(explored(text, texts_of(assignments)), catalogue, gear)); });
 }
 
 std::string tables() { return tables_of_the_library().dump(); }

@@ -25,7 +25,8 @@ std::string text_of(const std::filesystem::path& file) {
 std::vector<std::string> all_between(const std::string& text, const char* tag) {
   const std::regex pattern(fmt::format("<{0}[^>]*>\\s*([^<]*?)\\s*</{0}>", tag));
   std::vector<std::string> found;
-  for (std::sregex_iterator at(text.begin(), text.end(), pattern), end; at != end; ++at) found.push_back((*at)[1]);
+  for (std::sregex_iterator match(text.begin(), text.end(), pattern), end; match != end; ++match)
+    found.push_back((*match)[1]);
   return found;
 }
 
@@ -90,8 +91,8 @@ int main(int argc, char** argv) {
   }
   std::puts("};\n\nconstexpr PrefixRow prefixes[] = {");
   const std::regex block("<prefix>([\\s\\S]*?)</prefix>");
-  for (std::sregex_iterator at(prefixes.begin(), prefixes.end(), block), end; at != end; ++at) {
-    const std::string body = (*at)[1];
+  for (std::sregex_iterator match(prefixes.begin(), prefixes.end(), block), end; match != end; ++match) {
+    const std::string body = (*match)[1];
     const std::string value = all_between(body, "value").front();
     for (const std::string& name : all_between(body, "name"))
       std::printf("    {\"%s\", false, %s},\n", name.c_str(), value.c_str());

@@ -2,7 +2,7 @@
 export class Playback {
   share = 0;
   playing = true;
-  slowness = 100;
+  slowdown = 100;
   private last = 0;
 
   /** `period` [s] of what is shown; `draw` is called once a frame while it moves. */
@@ -25,7 +25,7 @@ export class Playback {
     this.last = now;
     const period = this.period();
     if (this.playing && period > 0 && !document.hidden) {
-      const next = this.share + elapsed / (this.slowness * period);
+      const next = this.share + elapsed / (this.slowdown * period);
       const share = this.repeats() ? next % 1 : Math.min(1, next);
       if (share !== this.share) this.show(share);
     }

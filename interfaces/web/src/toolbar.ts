@@ -198,8 +198,8 @@ export class Toolbar {
       playback.show(Number(scrub.value) / 1000);
     });
     const slow = () => {
-      playback.slowness = 10 ** Number(rate.value);
-      byId('rate-shown').textContent = `${Number(playback.slowness.toPrecision(2))} ×`;
+      playback.slowdown = 10 ** Number(rate.value);
+      byId('rate-shown').textContent = `${Number(playback.slowdown.toPrecision(2))} ×`;
     };
     rate.addEventListener('input', slow);
     slow();

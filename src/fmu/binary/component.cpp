@@ -344,15 +344,15 @@ int Component::directional(const unsigned* unknowns, std::size_t unknown_count, 
       }
       along.push_back({knowns[n], seed[n]});
     }
-    std::vector<std::size_t> of;
+    std::vector<std::size_t> outputs;
     for (std::size_t n = 0; n < unknown_count; ++n) {
       const VariableKind kind = kind_of(unknowns[n]);
       if (!variables_.count(unknowns[n]) || (kind != VariableKind::derivative && kind != VariableKind::output)) {
         return refuse("derivatives are of state derivatives and continuous outputs alone");
       }
-      of.push_back(unknowns[n]);
+      outputs.push_back(unknowns[n]);
     }
-    const std::vector<double> found = instance_->directional(of, along);
+    const std::vector<double> found = instance_->directional(outputs, along);
     std::copy(found.begin(), found.end(), sensitivity);
     return int(ok);
   });

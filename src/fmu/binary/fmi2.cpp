@@ -33,7 +33,7 @@ fmi2Status values2(fmi2Component c, const char* function, size_t count, const Wo
 }
 /// What no variable has or nothing supports: right for none of it.
 fmi2Status none2(fmi2Component c, const char* function, size_t count, const char* what) noexcept {
-  return with2(c, function, [&](Component& of) { return count == 0 ? 0 : of.unsupported(what); });
+  return with2(c, function, [&](Component& component) { return count == 0 ? 0 : component.unsupported(what); });
 }
 
 }  // namespace
@@ -71,10 +71,10 @@ void fmi2FreeInstance(fmi2Component c) { delete static_cast<Fmi2*>(c); }
 
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance, fmi2Real start,
                                fmi2Boolean, fmi2Real) {
-  return with2(c, "fmi2SetupExperiment", [&](Component& of) {
+  return with2(c, "fmi2SetupExperiment", [&](Component& component) {
     Fmi2& fmu = *static_cast<Fmi2*>(c);
     if (!(std::abs(start) <= wingbeat::fmu::latest_time)) {
-      return of.refuse("fmi2SetupExperiment: the start time must be a number of at most 1e6 s");
+      return component.refuse("fmi2SetupExperiment: the start time must be a number of at most 1e6 s");
     }
     fmu.start = start;
     fmu.tolerance = tolerance;
@@ -84,35 +84,39 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2R
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
-  return with2(c, "fmi2EnterInitializationMode", [&](Component& of) {
+  return with2(c, "fmi2EnterInitializationMode", [&](Component& component) {
     Fmi2& fmu = *static_cast<Fmi2*>(c);
-    return of.enter_initialisation(fmu.has_tolerance, fmu.tolerance, fmu.start);
+    return component.enter_initialisation(fmu.has_tolerance, fmu.tolerance, fmu.start);
   });
 }
 fmi2Status fmi2ExitInitializationMode(fmi2Component c) {
-  return with2(c, "fmi2ExitInitializationMode", [](Component& of) { return of.exit_initialisation(); });
+  return with2(c, "fmi2ExitInitializationMode", [](Component& component) { return component.exit_initialisation(); });
 }
 fmi2Status fmi2Terminate(fmi2Component c) {
-  return with2(c, "fmi2Terminate", [](Component& of) { return of.terminate(); });
+  return with2(c, "fmi2Terminate", [](Component& component) { return component.terminate(); });
 }
 fmi2Status fmi2Reset(fmi2Component c) {
-  return with2(c, "fmi2Reset", [](Component& of) { return of.reset(); });
+  return with2(c, "fmi2Reset", [](Component& component) { return component.reset(); });
 }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Real values[]) {
-  return values2(c, "fmi2GetReal", n, [&](Component& of) { return of.get_reals(r, n, values); }, r, values);
+  return values2(
+      c, "fmi2GetReal", n, [&](Component& component) { return component.get_reals(r, n, values); }, r, values);
 }
 fmi2Status fmi2GetInteger(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Integer values[]) {
-  return values2(c, "fmi2GetInteger", n, [&](Component& of) { return of.get_integers(r, n, values); }, r, values);
+  return values2(
+      c, "fmi2GetInteger", n, [&](Component& component) { return component.get_integers(r, n, values); }, r, values);
 }
 fmi2Status fmi2GetBoolean(fmi2Component c, const fmi2ValueReference[], size_t n, fmi2Boolean[]) {
   return none2(c, "fmi2GetBoolean", n, "a Boolean variable");
 }
 fmi2Status fmi2GetString(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2String values[]) {
-  return values2(c, "fmi2GetString", n, [&](Component& of) { return of.get_texts(r, n, values); }, r, values);
+  return values2(
+      c, "fmi2GetString", n, [&](Component& component) { return component.get_texts(r, n, values); }, r, values);
 }
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Real values[]) {
-  return values2(c, "fmi2SetReal", n, [&](Component& of) { return of.set_reals(r, n, values); }, r, values);
+  return values2(
+      c, "fmi2SetReal", n, [&](Component& component) { return component.set_reals(r, n, values); }, r, values);
 }
 fmi2Status fmi2SetInteger(fmi2Component c, const fmi2ValueReference[], size_t n, const fmi2Integer[]) {
   return none2(c, "fmi2SetInteger", n, "setting an Integer");
@@ -125,52 +129,57 @@ fmi2Status fmi2SetString(fmi2Component c, const fmi2ValueReference[], size_t n, 
 }
 
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return values2(c, "fmi2GetFMUstate", 1, [&](Component& of) { return of.save(state); }, state);
+  return values2(c, "fmi2GetFMUstate", 1, [&](Component& component) { return component.save(state); }, state);
 }
 fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state) {
-  return with2(c, "fmi2SetFMUstate", [&](Component& of) { return of.restore(state); });
+  return with2(c, "fmi2SetFMUstate", [&](Component& component) { return component.restore(state); });
 }
 fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate* state) {
-  return with2(c, "fmi2FreeFMUstate", [&](Component& of) { return of.free_state(state); });
+  return with2(c, "fmi2FreeFMUstate", [&](Component& component) { return component.free_state(state); });
 }
 fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t* size) {
-  return values2(c, "fmi2SerializedFMUstateSize", 1, [&](Component& of) { return of.size_of(state, size); }, size);
+  return values2(
+      c, "fmi2SerializedFMUstateSize", 1, [&](Component& component) { return component.size_of(state, size); }, size);
 }
 fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size) {
-  return values2(c, "fmi2SerializeFMUstate", 1, [&](Component& of) { return of.serialise(state, bytes, size); }, bytes);
+  return values2(
+      c, "fmi2SerializeFMUstate", 1, [&](Component& component) { return component.serialise(state, bytes, size); },
+      bytes);
 }
 fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size, fmi2FMUstate* state) {
   return values2(
-      c, "fmi2DeSerializeFMUstate", 1, [&](Component& of) { return of.deserialise(bytes, size, state); }, bytes, state);
+      c, "fmi2DeSerializeFMUstate", 1, [&](Component& component) { return component.deserialise(bytes, size, state); },
+      bytes, state);
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t unknowns,
                                         const fmi2ValueReference known[], size_t knowns, const fmi2Real seed[],
                                         fmi2Real sensitivity[]) {
   constexpr const char* function = "fmi2GetDirectionalDerivative";
-  return with2(c, function, [&](Component& of) {
-    if (const int wrong = of.check_values(function, unknowns, {unknown, sensitivity})) return wrong;
-    if (const int wrong = of.check_values(function, knowns, {known, seed})) return wrong;
-    return of.directional(unknown, unknowns, known, knowns, seed, knowns, sensitivity, unknowns);
+  return with2(c, function, [&](Component& component) {
+    if (const int wrong = component.check_values(function, unknowns, {unknown, sensitivity})) return wrong;
+    if (const int wrong = component.check_values(function, knowns, {known, seed})) return wrong;
+    return component.directional(unknown, unknowns, known, knowns, seed, knowns, sensitivity, unknowns);
   });
 }
 
 fmi2Status fmi2EnterEventMode(fmi2Component c) {
-  return with2(c, "fmi2EnterEventMode", [](Component& of) { return of.enter_event_mode(); });
+  return with2(c, "fmi2EnterEventMode", [](Component& component) { return component.enter_event_mode(); });
 }
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo* info) {
   return values2(
       c, "fmi2NewDiscreteStates", 1,
-      [&](Component& of) {
+      [&](Component& component) {
         Component::Updated to;
-        const int code = of.update_discrete(to);
+        const int code = component.update_discrete(to);
         *info = {0, to.terminate, 0, to.states_changed, to.next_event_defined, to.next_event};
         return code;
       },
       info);
 }
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
-  return with2(c, "fmi2EnterContinuousTimeMode", [](Component& of) { return of.enter_continuous_mode(); });
+  return with2(c, "fmi2EnterContinuousTimeMode",
+               [](Component& component) { return component.enter_continuous_mode(); });
 }
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean* enter_event_mode,
                                        fmi2Boolean* terminate) {
@@ -183,23 +192,25 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean, fmi2Boolean
       enter_event_mode, terminate);
 }
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) {
-  return with2(c, "fmi2SetTime", [&](Component& of) { return of.set_time(t); });
+  return with2(c, "fmi2SetTime", [&](Component& component) { return component.set_time(t); });
 }
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real y[], size_t n) {
-  return values2(c, "fmi2SetContinuousStates", n, [&](Component& of) { return of.set_states(y, n); }, y);
+  return values2(c, "fmi2SetContinuousStates", n, [&](Component& component) { return component.set_states(y, n); }, y);
 }
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real dy[], size_t n) {
-  return values2(c, "fmi2GetDerivatives", n, [&](Component& of) { return of.get_rates(dy, n); }, dy);
+  return values2(c, "fmi2GetDerivatives", n, [&](Component& component) { return component.get_rates(dy, n); }, dy);
 }
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n) {
-  return values2(c, "fmi2GetEventIndicators", n, [&](Component& of) { return of.get_indicators(z, n); }, z);
+  return values2(
+      c, "fmi2GetEventIndicators", n, [&](Component& component) { return component.get_indicators(z, n); }, z);
 }
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real y[], size_t n) {
-  return values2(c, "fmi2GetContinuousStates", n, [&](Component& of) { return of.get_states(y, n); }, y);
+  return values2(c, "fmi2GetContinuousStates", n, [&](Component& component) { return component.get_states(y, n); }, y);
 }
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real sizes[], size_t n) {
   return values2(
-      c, "fmi2GetNominalsOfContinuousStates", n, [&](Component& of) { return of.get_nominals(sizes, n); }, sizes);
+      c, "fmi2GetNominalsOfContinuousStates", n, [&](Component& component) { return component.get_nominals(sizes, n); },
+      sizes);
 }
 
 fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference[], size_t n, const fmi2Integer[],
@@ -211,7 +222,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
   return none2(c, "fmi2GetRealOutputDerivatives", n, "derivatives of outputs");
 }
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real from, fmi2Real length, fmi2Boolean) {
-  return with2(c, "fmi2DoStep", [&](Component& of) { return of.step(from, length); });
+  return with2(c, "fmi2DoStep", [&](Component& component) { return component.step(from, length); });
 }
 fmi2Status fmi2CancelStep(fmi2Component c) { return none2(c, "fmi2CancelStep", 1, "a step that is under way"); }
 fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind, fmi2Status*) {
@@ -221,8 +232,8 @@ fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Rea
   if (kind != fmi2LastSuccessfulTime) return fmi2Discard;
   return values2(
       c, "fmi2GetRealStatus", 1,
-      [&](Component& of) {
-        *value = of.time();
+      [&](Component& component) {
+        *value = component.time();
         return 0;
       },
       value);
@@ -232,8 +243,8 @@ fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
   if (kind != fmi2Terminated) return fmi2Discard;
   return values2(
       c, "fmi2GetBooleanStatus", 1,
-      [&](Component& of) {
-        *value = of.ended();
+      [&](Component& component) {
+        *value = component.ended();
         return 0;
       },
       value);

@@ -28,14 +28,15 @@ fmi3Status variables3(fmi3Instance c, const char* function, const fmi3ValueRefer
                       Value* values, size_t count, const Work& work) noexcept {
   return values3(
       c, function, references,
-      [&](Component& of) {
-        if (count != references) return of.refuse(std::string(function) + ": as many values as references are needed");
-        return work(of);
+      [&](Component& component) {
+        if (count != references)
+          return component.refuse(std::string(function) + ": as many values as references are needed");
+        return work(component);
       },
       r, values);
 }
 fmi3Status unsupported3(fmi3Instance c, const char* what) noexcept {
-  return with3(c, what, [&](Component& of) { return of.unsupported(what); });
+  return with3(c, what, [&](Component& component) { return component.unsupported(what); });
 }
 /// What no variable has or nothing supports: right for none of it.
 fmi3Status none3(fmi3Instance c, size_t count, const char* what) noexcept {
@@ -93,54 +94,56 @@ void fmi3FreeInstance(fmi3Instance c) { delete static_cast<Component*>(c); }
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has_tolerance, fmi3Float64 tolerance,
                                        fmi3Float64 start, fmi3Boolean, fmi3Float64) {
   return with3(c, "fmi3EnterInitializationMode",
-               [&](Component& of) { return of.enter_initialisation(has_tolerance, tolerance, start); });
+               [&](Component& component) { return component.enter_initialisation(has_tolerance, tolerance, start); });
 }
 fmi3Status fmi3ExitInitializationMode(fmi3Instance c) {
-  return with3(c, "fmi3ExitInitializationMode", [](Component& of) { return of.exit_initialisation(); });
+  return with3(c, "fmi3ExitInitializationMode", [](Component& component) { return component.exit_initialisation(); });
 }
 fmi3Status fmi3EnterEventMode(fmi3Instance c) {
-  return with3(c, "fmi3EnterEventMode", [](Component& of) { return of.enter_event_mode(); });
+  return with3(c, "fmi3EnterEventMode", [](Component& component) { return component.enter_event_mode(); });
 }
 fmi3Status fmi3Terminate(fmi3Instance c) {
-  return with3(c, "fmi3Terminate", [](Component& of) { return of.terminate(); });
+  return with3(c, "fmi3Terminate", [](Component& component) { return component.terminate(); });
 }
 fmi3Status fmi3Reset(fmi3Instance c) {
-  return with3(c, "fmi3Reset", [](Component& of) { return of.reset(); });
+  return with3(c, "fmi3Reset", [](Component& component) { return component.reset(); });
 }
 fmi3Status fmi3EnterConfigurationMode(fmi3Instance c) { return unsupported3(c, "configuration mode"); }
 fmi3Status fmi3ExitConfigurationMode(fmi3Instance c) { return unsupported3(c, "configuration mode"); }
 fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) {
-  return with3(c, "fmi3EnterContinuousTimeMode", [](Component& of) { return of.enter_continuous_mode(); });
+  return with3(c, "fmi3EnterContinuousTimeMode",
+               [](Component& component) { return component.enter_continuous_mode(); });
 }
 fmi3Status fmi3EnterStepMode(fmi3Instance c) { return unsupported3(c, "event mode in co-simulation"); }
 fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance c) { return c ? fmi3OK : fmi3Error; }
 
 fmi3Status fmi3GetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Float64 values[], size_t count) {
   return variables3(c, "fmi3GetFloat64", r, n, values, count,
-                    [&](Component& of) { return of.get_reals(r, n, values); });
+                    [&](Component& component) { return component.get_reals(r, n, values); });
 }
 fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n, const fmi3Float64 values[],
                           size_t count) {
   return variables3(c, "fmi3SetFloat64", r, n, values, count,
-                    [&](Component& of) { return of.set_reals(r, n, values); });
+                    [&](Component& component) { return component.set_reals(r, n, values); });
 }
 fmi3Status fmi3GetInt32(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Int32 values[], size_t count) {
   return variables3(c, "fmi3GetInt32", r, n, values, count,
-                    [&](Component& of) { return of.get_wholes(r, n, values, false); });
+                    [&](Component& component) { return component.get_wholes(r, n, values, false); });
 }
 fmi3Status fmi3GetInt64(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3Int64 values[], size_t count) {
   // Enumerations are got by this function.
-  return variables3(c, "fmi3GetInt64", r, n, values, count, [&](Component& of) {
+  return variables3(c, "fmi3GetInt64", r, n, values, count, [&](Component& component) {
     for (size_t k = 0; k < n; ++k) {
       int value = 0;
-      if (const int code = of.get_wholes(r + k, 1, &value, true)) return code;
+      if (const int code = component.get_wholes(r + k, 1, &value, true)) return code;
       values[k] = value;
     }
     return 0;
   });
 }
 fmi3Status fmi3GetString(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3String values[], size_t count) {
-  return variables3(c, "fmi3GetString", r, n, values, count, [&](Component& of) { return of.get_texts(r, n, values); });
+  return variables3(c, "fmi3GetString", r, n, values, count,
+                    [&](Component& component) { return component.get_texts(r, n, values); });
 }
 
 // Types that no variable has, or none that can be set.
@@ -219,8 +222,8 @@ fmi3Status fmi3SetShiftFraction(fmi3Instance c, const fmi3ValueReference[], size
 fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance c, fmi3ValueReference reference, size_t* count) {
   return values3(
       c, "fmi3GetNumberOfVariableDependencies", 1,
-      [&](Component& of) {
-        *count = of.dependencies(reference).size();
+      [&](Component& component) {
+        *count = component.dependencies(reference).size();
         return 0;
       },
       count);
@@ -230,9 +233,9 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance c, fmi3ValueReference depend
                                        fmi3DependencyKind kinds[], size_t count) {
   return values3(
       c, "fmi3GetVariableDependencies", count,
-      [&](Component& of) {
-        const auto on = of.dependencies(dependent);
-        if (count != on.size()) return of.unsupported("another number of dependencies than there are");
+      [&](Component& component) {
+        const auto on = component.dependencies(dependent);
+        if (count != on.size()) return component.unsupported("another number of dependencies than there are");
         for (size_t n = 0; n < count; ++n) {
           dependent_elements[n] = independent_elements[n] = 0;
           independents[n] = fmi3ValueReference(on[n]);
@@ -244,33 +247,37 @@ fmi3Status fmi3GetVariableDependencies(fmi3Instance c, fmi3ValueReference depend
 }
 
 fmi3Status fmi3GetFMUState(fmi3Instance c, fmi3FMUState* state) {
-  return values3(c, "fmi3GetFMUState", 1, [&](Component& of) { return of.save(state); }, state);
+  return values3(c, "fmi3GetFMUState", 1, [&](Component& component) { return component.save(state); }, state);
 }
 fmi3Status fmi3SetFMUState(fmi3Instance c, fmi3FMUState state) {
-  return with3(c, "fmi3SetFMUState", [&](Component& of) { return of.restore(state); });
+  return with3(c, "fmi3SetFMUState", [&](Component& component) { return component.restore(state); });
 }
 fmi3Status fmi3FreeFMUState(fmi3Instance c, fmi3FMUState* state) {
-  return with3(c, "fmi3FreeFMUState", [&](Component& of) { return of.free_state(state); });
+  return with3(c, "fmi3FreeFMUState", [&](Component& component) { return component.free_state(state); });
 }
 fmi3Status fmi3SerializedFMUStateSize(fmi3Instance c, fmi3FMUState state, size_t* size) {
-  return values3(c, "fmi3SerializedFMUStateSize", 1, [&](Component& of) { return of.size_of(state, size); }, size);
+  return values3(
+      c, "fmi3SerializedFMUStateSize", 1, [&](Component& component) { return component.size_of(state, size); }, size);
 }
 fmi3Status fmi3SerializeFMUState(fmi3Instance c, fmi3FMUState state, fmi3Byte bytes[], size_t size) {
-  return values3(c, "fmi3SerializeFMUState", 1, [&](Component& of) { return of.serialise(state, bytes, size); }, bytes);
+  return values3(
+      c, "fmi3SerializeFMUState", 1, [&](Component& component) { return component.serialise(state, bytes, size); },
+      bytes);
 }
 fmi3Status fmi3DeserializeFMUState(fmi3Instance c, const fmi3Byte bytes[], size_t size, fmi3FMUState* state) {
   return values3(
-      c, "fmi3DeserializeFMUState", 1, [&](Component& of) { return of.deserialise(bytes, size, state); }, bytes, state);
+      c, "fmi3DeserializeFMUState", 1, [&](Component& component) { return component.deserialise(bytes, size, state); },
+      bytes, state);
 }
 
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknown[], size_t unknowns,
                                         const fmi3ValueReference known[], size_t knowns, const fmi3Float64 seed[],
                                         size_t seeds, fmi3Float64 sensitivity[], size_t sensitivities) {
   constexpr const char* function = "fmi3GetDirectionalDerivative";
-  return with3(c, function, [&](Component& of) {
-    if (const int wrong = of.check_values(function, unknowns, {unknown, sensitivity})) return wrong;
-    if (const int wrong = of.check_values(function, knowns, {known, seed})) return wrong;
-    return of.directional(unknown, unknowns, known, knowns, seed, seeds, sensitivity, sensitivities);
+  return with3(c, function, [&](Component& component) {
+    if (const int wrong = component.check_values(function, unknowns, {unknown, sensitivity})) return wrong;
+    if (const int wrong = component.check_values(function, knowns, {known, seed})) return wrong;
+    return component.directional(unknown, unknowns, known, knowns, seed, seeds, sensitivity, sensitivities);
   });
 }
 fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference[], size_t, const fmi3ValueReference[],
@@ -282,9 +289,9 @@ fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean* again, fmi3Bool
                                     fmi3Boolean* values, fmi3Boolean* defined, fmi3Float64* next) {
   return values3(
       c, "fmi3UpdateDiscreteStates", 1,
-      [&](Component& of) {
+      [&](Component& component) {
         Component::Updated to;
-        const int code = of.update_discrete(to);
+        const int code = component.update_discrete(to);
         *again = *nominals = false;
         *terminate = to.terminate;
         *values = to.states_changed;
@@ -305,29 +312,32 @@ fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean, fmi3Boolean*
       enter_event_mode, terminate);
 }
 fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 t) {
-  return with3(c, "fmi3SetTime", [&](Component& of) { return of.set_time(t); });
+  return with3(c, "fmi3SetTime", [&](Component& component) { return component.set_time(t); });
 }
 fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64 y[], size_t n) {
-  return values3(c, "fmi3SetContinuousStates", n, [&](Component& of) { return of.set_states(y, n); }, y);
+  return values3(c, "fmi3SetContinuousStates", n, [&](Component& component) { return component.set_states(y, n); }, y);
 }
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 dy[], size_t n) {
-  return values3(c, "fmi3GetContinuousStateDerivatives", n, [&](Component& of) { return of.get_rates(dy, n); }, dy);
+  return values3(
+      c, "fmi3GetContinuousStateDerivatives", n, [&](Component& component) { return component.get_rates(dy, n); }, dy);
 }
 fmi3Status fmi3GetEventIndicators(fmi3Instance c, fmi3Float64 z[], size_t n) {
-  return values3(c, "fmi3GetEventIndicators", n, [&](Component& of) { return of.get_indicators(z, n); }, z);
+  return values3(
+      c, "fmi3GetEventIndicators", n, [&](Component& component) { return component.get_indicators(z, n); }, z);
 }
 fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64 y[], size_t n) {
-  return values3(c, "fmi3GetContinuousStates", n, [&](Component& of) { return of.get_states(y, n); }, y);
+  return values3(c, "fmi3GetContinuousStates", n, [&](Component& component) { return component.get_states(y, n); }, y);
 }
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance c, fmi3Float64 sizes[], size_t n) {
   return values3(
-      c, "fmi3GetNominalsOfContinuousStates", n, [&](Component& of) { return of.get_nominals(sizes, n); }, sizes);
+      c, "fmi3GetNominalsOfContinuousStates", n, [&](Component& component) { return component.get_nominals(sizes, n); },
+      sizes);
 }
 fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t* n) {
   return values3(
       c, "fmi3GetNumberOfEventIndicators", 1,
-      [&](Component& of) {
-        *n = of.indicator_count();
+      [&](Component& component) {
+        *n = component.indicator_count();
         return 0;
       },
       n);
@@ -335,8 +345,8 @@ fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance c, size_t* n) {
 fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance c, size_t* n) {
   return values3(
       c, "fmi3GetNumberOfContinuousStates", 1,
-      [&](Component& of) {
-        *n = of.state_count();
+      [&](Component& component) {
+        *n = component.state_count();
         return 0;
       },
       n);
@@ -349,11 +359,11 @@ fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 from, fmi3Float64 length, fmi3
                       fmi3Boolean* terminate, fmi3Boolean* early_return, fmi3Float64* last_time) {
   return values3(
       c, "fmi3DoStep", 1,
-      [&](Component& of) {
-        const int code = of.step(from, length);
+      [&](Component& component) {
+        const int code = component.step(from, length);
         *event_needed = *early_return = false;
-        *terminate = of.ended();
-        *last_time = of.time();
+        *terminate = component.ended();
+        *last_time = component.time();
         return code;
       },
       event_needed, terminate, early_return, last_time);

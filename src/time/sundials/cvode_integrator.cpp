@@ -114,18 +114,18 @@ class Cvode : public Integrator {
   static int jacobian(realtype t, N_Vector y, N_Vector fy, SUNMatrix jac, void* p, N_Vector, N_Vector, N_Vector) {
     Cvode& c = self(p);
     const int n = c.problem_.size;
-    const double* at = N_VGetArrayPointer(y);
+    const double* values = N_VGetArrayPointer(y);
     const double* f = N_VGetArrayPointer(fy);
     SUNMatZero(jac);
-    c.shifted_.assign(at, at + n);
+    c.shifted_.assign(values, values + n);
     for (int column = 0; column < c.problem_.coupled; ++column) {
       // Forward differences: the square root of rounding balances rounding against curvature.
-      const double step = 1.5e-8 * std::max(std::abs(at[column]), c.problem_.typical[std::size_t(column)]);
-      c.shifted_[std::size_t(column)] = at[column] + step;
+      const double step = 1.5e-8 * std::max(std::abs(values[column]), c.problem_.typical[std::size_t(column)]);
+      c.shifted_[std::size_t(column)] = values[column] + step;
       if (!c.problem_.rates(t, c.shifted_.data(), c.shifted_rates_.data())) return 1;
       realtype* entries = SUNDenseMatrix_Column(jac, column);
       for (int row = 0; row < n; ++row) entries[row] = (c.shifted_rates_[std::size_t(row)] - f[row]) / step;
-      c.shifted_[std::size_t(column)] = at[column];
+      c.shifted_[std::size_t(column)] = values[column];
     }
     return 0;
   }

@@ -35,12 +35,12 @@ void evaluate(const Case* cases, int count, double* out) {
                          gather([](const Case& c) { return c.voltage; }),
                          force,
                          force};
-    const auto at = instant<B>(vehicle, point);
+    const auto numbers_at = instant<B>(vehicle, point);
     // Steps start a little off rest, as a crank speed of zero ends a cycle.
     const auto step = crank_step<B>(vehicle, gather([](const Case& c) { return c.theta; }),
                                     {B(120.0) + abs(omega), current}, B(0.1), {force, B(1.0), B(1.0), B(1.0), B(1.0)});
     for (int n = 0; n < outputs; ++n) {
-      (n < instant_size ? at[std::size_t(n)] : step[std::size_t(n - instant_size)]).store(numbers);
+      (n < instant_size ? numbers_at[std::size_t(n)] : step[std::size_t(n - instant_size)]).store(numbers);
       for (int lane = 0; lane < size && start + lane < count; ++lane) {
         out[(start + lane) * outputs + n] = numbers[lane];
       }
@@ -103,11 +103,12 @@ void functions(const double* x, int count, double* out) {
   for (int start = 0; start < count; start += B::lanes) {
     alignas(64) double numbers[B::lanes];
     for (int lane = 0; lane < B::lanes; ++lane) numbers[lane] = x[start + lane];
-    const B at = B::load(numbers), positive = abs(at) + B(1e-3);
+    const B argument = B::load(numbers), positive = abs(argument) + B(1e-3);
     const auto root = root_of(positive);
-    const auto reduced = sine_cosine_of_reduced(at);
-    const B results[function_count] = {sin(at),      cos(at),           atan(at),     inverse_of(positive), root.value,
-                                       root.inverse, nearest_whole(at), reduced.sine, reduced.cosine};
+    const auto reduced = sine_cosine_of_reduced(argument);
+    const B results[function_count] = {sin(argument),           cos(argument), atan(argument),
+                                       inverse_of(positive),    root.value,    root.inverse,
+                                       nearest_whole(argument), reduced.sine,  reduced.cosine};
     for (int f = 0; f < function_count; ++f) {
       results[f].store(numbers);
       for (int lane = 0; lane < B::lanes; ++lane) out[(start + lane) * function_count + f] = numbers[lane];

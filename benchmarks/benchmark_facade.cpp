@@ -1,7 +1,7 @@
 // The library's own time for what benchmarks/python_cost asks of it through Python: answers a line for each line of its
 // standard input, so that both can take turns.
 //
-//   benchmark_door VEHICLE
+//   benchmark_facade VEHICLE
 //     metrics             every metric at the vehicle's voltage, as hexadecimal numbers
 //     solve COUNT         seconds for each of so many calls of solve, the voltage a little different each time
 //     columns COUNT       seconds for so many designs (voltage and crank radius) on all cores
@@ -66,7 +66,7 @@ double columns(const Design<double>& design, std::size_t count) {
 
 int main(int argc, char** argv) {
   if (argc != 2) {
-    std::fprintf(stderr, "usage: benchmark_door VEHICLE\n");
+    std::fprintf(stderr, "usage: benchmark_facade VEHICLE\n");
     return 2;
   }
   const Design<double> design = read_design(argv[1]);

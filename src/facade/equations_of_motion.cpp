@@ -22,10 +22,10 @@ PitchMotion<double> motion_at_state(const Vehicle<double>& vehicle, const double
   branch.pitching = sign_of(pitch_margin(vehicle.wings, std::abs(k.stroke_slope * omega)));
   const auto on_branch = [&]() -> PitchMotion<double> {
     if (!pitches(vehicle)) {
-      const Instant<double> at = instant_at(vehicle, k, N_k_beta, omega, current, voltage, branch.stroke,
-                                            branch.direction, branch.pitching, branch.gear);
-      branch.force = sign_of(at.force_switch);
-      return {motion_on(vehicle, at, current, voltage, branch), 0.0, 0.0, 0.0, 0.0};
+      const IntermediateTerms<double> terms = terms_at(vehicle, k, N_k_beta, omega, current, voltage, branch.stroke,
+                                                       branch.direction, branch.pitching, branch.gear);
+      branch.force = sign_of(terms.force_switch);
+      return {motion_on(vehicle, terms, current, voltage, branch), 0.0, 0.0, 0.0, 0.0};
     }
     const double psi = state[pitch], velocity = state[pitch + 1];
     const auto on_force_branch = [&] {

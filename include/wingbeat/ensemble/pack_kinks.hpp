@@ -8,43 +8,43 @@ namespace wingbeat {
 
 /// build_mesh() where segments end at the sign changes of the pitch margin, too.
 template <class L, int N>
-void PackOrbit<L, N>::build_mesh_with_bends(int half) {
-  constexpr std::size_t most = 2 * max_force_switches;
-  const ForceSwitches<L>&f = switches_[std::size_t(half)], &b = bend_switches_[std::size_t(half)];
+void PackOrbit<L, N>::build_mesh_with_kinks(int half) {
+  constexpr std::size_t max_switches = 2 * max_force_switches;
+  const ForceSwitches<L>&f = switches_[std::size_t(half)], &b = kink_switches_[std::size_t(half)];
   HalfMesh<L>& mesh = mesh_[std::size_t(half)];
   const L count = f.count + b.count;
   unresolved_ = unresolved_ || count > L(double(segments_ - 1));
   // Both lists are sorted; those beyond the counts go to the end.
-  std::array<L, most> place, bends;
+  std::array<L, max_switches> place, kinks;
   for (std::size_t n = 0; n < max_force_switches; ++n) {
-    place[n] = select<L>(f.count > L(double(n)), f.at[n], L(1e3));
-    bends[n] = L(0.0);
-    const std::size_t m = most - 1 - n;
-    place[m] = select<L>(b.count > L(double(n)), b.at[n], L(1e3));
-    bends[m] = L(1.0);
+    place[n] = select<L>(f.count > L(double(n)), f.angle[n], L(1e3));
+    kinks[n] = L(0.0);
+    const std::size_t m = max_switches - 1 - n;
+    place[m] = select<L>(b.count > L(double(n)), b.angle[n], L(1e3));
+    kinks[m] = L(1.0);
   }
-  for (std::size_t end = most; end > 1; --end) {
+  for (std::size_t end = max_switches; end > 1; --end) {
     for (std::size_t n = 0; n + 1 < end; ++n) {
       const Mask swap = place[n] > place[n + 1];
       const L low = min(place[n], place[n + 1]), high = max(place[n], place[n + 1]);
-      const L first = select<L>(swap, bends[n + 1], bends[n]), second = select<L>(swap, bends[n], bends[n + 1]);
+      const L first = select<L>(swap, kinks[n + 1], kinks[n]), second = select<L>(swap, kinks[n], kinks[n + 1]);
       place[n] = low, place[n + 1] = high;
-      bends[n] = first, bends[n + 1] = second;
+      kinks[n] = first, kinks[n + 1] = second;
     }
   }
   mesh.force.fill(f.first_sign);
   mesh.pitching.fill(b.first_sign);
   lay_segments(place, count, mesh, [&](std::size_t m, std::size_t n, const Mask& beyond) {
-    const Mask bend = bends[n] > L(0.0);
-    mesh.force[m] = select<L>(beyond && !bend, -mesh.force[m], mesh.force[m]);
-    mesh.pitching[m] = select<L>(beyond && bend, -mesh.pitching[m], mesh.pitching[m]);
+    const Mask kink = kinks[n] > L(0.0);
+    mesh.force[m] = select<L>(beyond && !kink, -mesh.force[m], mesh.force[m]);
+    mesh.pitching[m] = select<L>(beyond && kink, -mesh.pitching[m], mesh.pitching[m]);
   });
 }
 
 /// How far the pitch margin has the wrong sign inside the segments of half an iterate, as the nodes show it and the
 /// tops of the stroke speed between them [rad]. The slopes of the speed at the nodes are those of the last rates.
 template <class L, int N>
-L PackOrbit<L, N>::overlooked_bend(int half) const {
+L PackOrbit<L, N>::overlooked_kink(int half) const {
   const HalfMesh<L>& mesh = mesh_[std::size_t(half)];
   L depth(0.0);
   for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
@@ -56,14 +56,14 @@ L PackOrbit<L, N>::overlooked_bend(int half) const {
       const CrankKinematics<L>& k = configuration_of(node).kinematics;
       // Of the margin by crank angle, from there where it is positive on.
       const L slope = -(pitching * vehicle_.wings.pitch_coefficient * L(half == 0 ? 1.0 : -1.0) *
-                        (k.stroke_curve * trajectory_[node][0] + k.stroke_slope * rates_[node][0]));
+                        (k.stroke_second_derivative * trajectory_[node][0] + k.stroke_slope * rates_[node][0]));
       const L margin = pitching * margin_[node];
       if (m > 0 && m < std::size_t(rule_.intervals)) depth = max(depth, -margin);
       if (m > 0) {
         const L width = L(rule_.node[m] - rule_.node[m - 1]) * h;
         const Mask turns = slope_before < L(0.0) && slope > L(0.0);
-        const L bend = select<L>(turns, slope - slope_before, L(1.0));
-        const L lowest = pitching * margin_[node - 1] - L(0.5) * square(slope_before) * width * inverse_of(bend);
+        const L kink = select<L>(turns, slope - slope_before, L(1.0));
+        const L lowest = pitching * margin_[node - 1] - L(0.5) * square(slope_before) * width * inverse_of(kink);
         depth = max(depth, select<L>(turns, -lowest, L(0.0)));
       }
       slope_before = slope;
@@ -72,9 +72,9 @@ L PackOrbit<L, N>::overlooked_bend(int half) const {
   return depth;
 }
 
-/// Relative error of the rod force's peak where it stands on a bend, which the segment's end misses by a little.
+/// Relative error of the rod force's peak where it stands on a kink, which the segment's end misses by a little.
 template <class L, int N>
-L PackOrbit<L, N>::error_of_peak_on_bend(const L& peak) const {
+L PackOrbit<L, N>::error_of_peak_on_kink(const L& peak) const {
   const auto& force = observables_[std::size_t(Quantity::force)];
   L error(0.0);
   for (int half = 0; half < 2; ++half) {

@@ -12,8 +12,8 @@
 
 namespace wingbeat::detail {
 
-/// Of one cycle or several, whose duration is known at their end alone.
-class CrankPitchReading {
+/// Samples and integrals of one cycle or several, whose duration is known at their end alone.
+class CrankPitchSamples {
  public:
   void begin(const CrankModel& model) {
     metrics_ = {0.0, 0.0, infinity, -infinity, 0.0, 0.0};
@@ -30,14 +30,14 @@ class CrankPitchReading {
     constexpr double nodes[] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
     constexpr double weights[] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                   0.2369268850561891};
-    const std::size_t at = model.pitch_at();
+    const std::size_t pitch = model.pitch_at();
     const double half = 0.5 * (model.now.t - from), middle = from + half;
     double sign = 1.0;
     for (int k = 0; k < 5; ++k) {
       const double t = middle + half * nodes[k];
       const double* y = steps.dense(t);
       const CrankKinematics<double> kinematics = model.kinematics(y[0]);
-      const double psi = y[at], velocity = model.now.held ? 0.0 : y[at + 1];
+      const double psi = y[pitch], velocity = model.now.held ? 0.0 : y[pitch + 1];
       points_.push_back({t, half * weights[k], stroke_angle(kinematics), psi});
       loss_ += half * weights[k] * hinge_loads(model.vehicle.pitch.hinge, psi, velocity).loss;
       const double stroke_velocity = kinematics.stroke_slope * y[1], stroke = sign_of(stroke_velocity);
@@ -47,7 +47,7 @@ class CrankPitchReading {
       if (k == 2) sign = stroke;
     }
     for (const double t : {from, model.now.t}) {
-      const double psi = steps.dense(t)[at], alpha = 0.5 * pi + sign * psi;
+      const double psi = steps.dense(t)[pitch], alpha = 0.5 * pi + sign * psi;
       lowest_psi_ = std::min(lowest_psi_, psi);
       highest_psi_ = std::max(highest_psi_, psi);
       metrics_.angle_of_attack_min = std::min(metrics_.angle_of_attack_min, alpha);

@@ -11,18 +11,18 @@
 
 namespace wingbeat {
 
-enum class Rung { none, added_mass, gear, heat, all, pitch };
-inline constexpr std::array<std::string_view, 6> rung_names = {"none", "added_mass", "gear",
-                                                               "heat", "all_rungs",  "pitch"};
+enum class ModelOption { none, added_mass, gear, heat, all, pitch };
+inline constexpr std::array<std::string_view, 6> model_option_names = {"none", "added_mass",  "gear",
+                                                                       "heat", "all_options", "pitch"};
 
-/// Turns the rung on, its numbers drawn by `n` and the seed alone. A direct drive has no gear efficiency, and none of
-/// constant friction whose wings pitch.
-inline void add_rung(Design<double>& d, Rung rung, std::uint32_t n, std::uint32_t seed) {
-  std::seed_seq sequence{seed, 1000u + std::uint32_t(rung), n};
+/// Turns the model option on, its numbers drawn by `n` and the seed alone. A direct drive has no gear efficiency, and
+/// none of constant friction whose wings pitch.
+inline void add_model_option(Design<double>& d, ModelOption option, std::uint32_t n, std::uint32_t seed) {
+  std::seed_seq sequence{seed, 1000u + std::uint32_t(option), n};
   std::mt19937_64 random(sequence);
   const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
   const auto logarithmic = [&](double a, double b) { return a * std::pow(b / a, uniform(0.0, 1.0)); };
-  if ((rung == Rung::added_mass || rung == Rung::all) && d.aerodynamics.air_density > 0.0) {
+  if ((option == ModelOption::added_mass || option == ModelOption::all) && d.aerodynamics.air_density > 0.0) {
     d.aerodynamics.added_mass = true;
     d.aerodynamics.angle_of_attack_min.reset();
     // J_a up to the limit beyond which no inertia would be left at some angle of attack.
@@ -31,15 +31,15 @@ inline void add_rung(Design<double>& d, Rung rung, std::uint32_t n, std::uint32_
     d.wing.planform.s22 =
         logarithmic(0.01, 0.9) * (direct ? 1.0 : 3.0) * inertia / (0.25 * pi * d.aerodynamics.air_density);
   }
-  if ((rung == Rung::gear || rung == Rung::all) && d.transmission.type != TransmissionType::direct) {
+  if ((option == ModelOption::gear || option == ModelOption::all) && d.transmission.type != TransmissionType::direct) {
     d.motor.gear_efficiency = uniform(0.5, 1.0);
   }
-  if (rung == Rung::heat || rung == Rung::all) {
+  if (option == ModelOption::heat || option == ModelOption::all) {
     d.motor.thermal.resistance_winding = logarithmic(1.0, 40.0);
     d.motor.thermal.resistance_case = logarithmic(3.0, 80.0);
     if (uniform(0.0, 1.0) < 0.5) d.motor.thermal.magnet_temperature_coefficient = -0.001;
   }
-  if (rung == Rung::pitch) {
+  if (option == ModelOption::pitch) {
     // The semi-ellipse of the same S_2 and S_3, on hinges whose own frequency lies about that of flapping.
     Planform<double>& p = d.wing.planform;
     const double length = p.s3 / p.s2 * 15.0 * pi / 32.0;

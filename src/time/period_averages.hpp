@@ -14,11 +14,11 @@
 namespace wingbeat::detail {
 
 template <class Model>
-class PeriodReading;
+class PeriodAverages;
 
 /// Under the pitch law: nothing.
 template <>
-class PeriodReading<DirectModel> {
+class PeriodAverages<DirectModel> {
  public:
   void begin(const DirectModel&) {}
   void add_impulses(const DirectModel&, CycleIntegrals<double>&) const {}
@@ -29,7 +29,7 @@ class PeriodReading<DirectModel> {
 
 /// How wings that pitch on hinges have pitched.
 template <>
-class PeriodReading<PitchDirectModel> {
+class PeriodAverages<PitchDirectModel> {
  public:
   void begin(const PitchDirectModel& model) {
     metrics_ = {0.0, 0.0, infinity, -infinity, 0.0, 0.0};
