@@ -29,9 +29,9 @@ struct Piece {
   std::array<std::array<double, count>, total_count>
       coefficients;  ///< of Chebyshev's series, the first one halved in it
 
-  double value(Total of, double voltage) const {
+  double value(Total total, double voltage) const {
     const double x = high > low ? (2.0 * voltage - low - high) / (high - low) : 0.0;
-    return boost::math::chebyshev_clenshaw_recurrence(coefficients[of].data(), count, x);
+    return boost::math::chebyshev_clenshaw_recurrence(coefficients[total].data(), count, x);
   }
 };
 

@@ -57,7 +57,7 @@ struct MechanismPose {
 MechanismPose pose_of(const AnyTransmission<double>& transmission, double crank_angle, double stroke_angle,
                       double wing_length);
 
-/// The same at the stroke angle that belongs to the crank angle; not of a direct drive.
+/// That pose at the stroke angle that belongs to the crank angle; not of a direct drive.
 MechanismPose pose_of(const AnyTransmission<double>& transmission, double crank_angle, double wing_length);
 
 /// A length of wings [m] that suits a drawing of the mechanism, in which they are cut; 1 of a scheme.
