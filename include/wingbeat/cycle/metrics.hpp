@@ -84,18 +84,18 @@ CycleExtremes<S> extreme_candidates(const Motion<S>& m, const S& omega, const Br
 /// \f$f = 1 / \int \mathrm{d}t\f$. Equation numbers of the 2022 paper; model.md section 4:
 /// \f[
 /// \begin{aligned}
-/// P_\mathrm{e} &= \overline{v i} && (15) & P_\mathrm{m} &= \overline{T_\mathrm{m} \omega} && (16) \\
+/// P_\mathrm{e} &= \overline{v i} && (15) & P_\mathrm{m} &= \overline{T_\mathrm{m} \omega} && (16) \cr
 /// P_\mathrm{m,ref} &= 2 \pi f K_\mathrm{ref}\, \overline{i} && (17) &
-/// P_\mathrm{friction} &= \overline{T_\mathrm{f} \omega} && (18) \\
+/// P_\mathrm{friction} &= \overline{T_\mathrm{f} \omega} && (18) \cr
 /// P_\mathrm{aero} &= \overline{M_\mathrm{aero} \dot\beta} && (19) &
-/// P_\mathrm{loss} &= P_\mathrm{e} - P_\mathrm{aero} && (20) \\
+/// P_\mathrm{loss} &= P_\mathrm{e} - P_\mathrm{aero} && (20) \cr
 /// P_\mathrm{re} &= \overline{|(N_\mathrm{w} J_\mathrm{w} \ddot\beta + N_\mathrm{w} k \beta)\, \dot\beta|} && (23) &
-/// \eta_\mathrm{system} &= P_\mathrm{aero} / P_\mathrm{e} && (24) \\
+/// \eta_\mathrm{system} &= P_\mathrm{aero} / P_\mathrm{e} && (24) \cr
 /// \eta_\mathrm{motor} &= P_\mathrm{m} / P_\mathrm{e} && (25) &
-/// \eta_\mathrm{mechanism} &= P_\mathrm{aero} / P_\mathrm{m} && (26) \\
-/// P_\mathrm{cu} &= R_\mathrm{a} \overline{i^2} &&& P_\mathrm{visc} &= b\, \overline{\omega^2} \\
+/// \eta_\mathrm{mechanism} &= P_\mathrm{aero} / P_\mathrm{m} && (26) \cr
+/// P_\mathrm{cu} &= R_\mathrm{a} \overline{i^2} &&& P_\mathrm{visc} &= b\, \overline{\omega^2} \cr
 /// P_\mathrm{motor} &= T_\mathrm{c,m} \overline{|\omega|} &&&
-/// P_\mathrm{gear} &= \overline{(1 - e)\, T_\mathrm{g} \omega} \\
+/// P_\mathrm{gear} &= \overline{(1 - e)\, T_\mathrm{g} \omega} \cr
 /// P_\mathrm{residual} &= \overline{F (h \omega - g \dot\beta)} &&&
 /// i_\mathrm{rms} &= \sqrt{\overline{i^2}}
 /// \end{aligned}

@@ -55,7 +55,7 @@ S holding_torque(const V<S>& v, const S& F_s) {
 /// \f[
 /// \begin{aligned}
 /// T_\mathrm{high} &= T_\mathrm{c,m} + \operatorname{up}\left( F_\mathrm{s} h + T_\mathrm{x}
-/// + \mu r_\mathrm{e} |F_\mathrm{s}| + T_\mathrm{c} \right) \\
+/// + \mu r_\mathrm{e} |F_\mathrm{s}| + T_\mathrm{c} \right) \cr
 /// T_\mathrm{low} &= -T_\mathrm{c,m} - \operatorname{up}\left( -F_\mathrm{s} h - T_\mathrm{x}
 /// + \mu r_\mathrm{e} |F_\mathrm{s}| + T_\mathrm{c} \right)
 /// \end{aligned}

@@ -343,7 +343,7 @@ S added_energy(const BladeElement<S>& w, const S& alpha, const S& stroke_velocit
 /// nothing else. Eqs (14, 2, 3, 19), with \f$\alpha_\mathrm{min}\f$ in place of a smaller \f$\alpha\f$:
 /// \f[
 /// \begin{aligned}
-/// \alpha &= \frac{\pi}{2} - C_\alpha |\dot\beta|, & L &= \tfrac12 \rho\, C_\mathrm{L}(\alpha)\, \dot\beta^2 S_2, \\
+/// \alpha &= \frac{\pi}{2} - C_\alpha |\dot\beta|, & L &= \tfrac12 \rho\, C_\mathrm{L}(\alpha)\, \dot\beta^2 S_2, \cr
 /// M_\mathrm{aero} &= \tfrac12 \rho\, C_\mathrm{D}(\alpha)\, \dot\beta |\dot\beta|\, S_3, \qquad
 /// & P_\mathrm{aero} &= M_\mathrm{aero} \dot\beta
 /// \end{aligned}

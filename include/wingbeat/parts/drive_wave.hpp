@@ -30,12 +30,12 @@ inline constexpr double cosine_start = 0.5 * pi;
 /// \f$-\pi/2\f$ to \f$3\pi/2\f$:
 /// \f[
 /// \begin{aligned}
-/// v &= V \left( s(\varphi) - \frac{2 \delta}{\pi} + c(\psi) - \sin\varphi \right) + v_0 \\
+/// v &= V \left( s(\varphi) - \frac{2 \delta}{\pi} + c(\psi) - \sin\varphi \right) + v_0 \cr
 /// s(\varphi) &= \begin{cases}
-/// \sin\dfrac{\varphi}{1 + \delta} & \varphi < \pi (1 + \delta) \\
-/// \sin\dfrac{\varphi - 2\pi}{1 - \delta} & \text{otherwise} \end{cases} \\
+/// \sin\dfrac{\varphi}{1 + \delta} & \varphi < \pi (1 + \delta) \cr
+/// \sin\dfrac{\varphi - 2\pi}{1 - \delta} & \text{otherwise} \end{cases} \cr
 /// c(\psi) &= \begin{cases}
-/// \cos\dfrac{\psi}{1 + \delta_\mathrm{c}} & 0 \le \psi < \pi (1 + \delta_\mathrm{c}) \\
+/// \cos\dfrac{\psi}{1 + \delta_\mathrm{c}} & 0 \le \psi < \pi (1 + \delta_\mathrm{c}) \cr
 /// \cos\dfrac{\psi_\mathrm{p}}{1 - \delta_\mathrm{c}} & \text{otherwise} \end{cases}
 /// \end{aligned}
 /// \f]

@@ -54,7 +54,7 @@ void validate(const FourBar<double>& f);
 /// on the wings and h on the crank at the transmission angle \f$\mu\f$. A prime is a derivative by \f$\theta\f$.
 /// \f[
 /// \begin{aligned}
-/// \mu &= \varphi - \chi, \qquad g = \frac{p \sin\mu}{n_\mathrm{s}}, \qquad h = r_\mathrm{c} \sin(\theta - \chi) \\
+/// \mu &= \varphi - \chi, \qquad g = \frac{p \sin\mu}{n_\mathrm{s}}, \qquad h = r_\mathrm{c} \sin(\theta - \chi) \cr
 /// \varphi' &= \frac{h}{p \sin\mu}, \qquad B_1 = n_\mathrm{s} \varphi' = \frac{h}{g}, \qquad
 /// B_2 = n_\mathrm{s} \frac{h' - \varphi' (p \sin\mu)'}{p \sin\mu}
 /// \end{aligned}

@@ -27,7 +27,7 @@ inline constexpr double copper_resistance_slope = 0.0039;  ///< a_Cu of annealed
 /// \f[
 /// \begin{aligned}
 /// T_\mathrm{case} &= T_\mathrm{amb} + R_\mathrm{th2} (P_\mathrm{cu} + P_\mathrm{visc} + P_\mathrm{motor}), \qquad
-/// T_\mathrm{w} = T_\mathrm{case} + R_\mathrm{th1} P_\mathrm{cu} \\
+/// T_\mathrm{w} = T_\mathrm{case} + R_\mathrm{th1} P_\mathrm{cu} \cr
 /// R_\mathrm{a} &= R_\mathrm{a0} \left( 1 + a_\mathrm{Cu} (T_\mathrm{w} - T_0) \right), \qquad
 /// K = K_0 \left( 1 + a_B (T_\mathrm{case} - T_0) \right)
 /// \end{aligned}

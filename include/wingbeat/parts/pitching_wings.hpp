@@ -234,9 +234,9 @@ struct PitchAeroLoads {
 /// \begin{aligned}
 /// \alpha &= \frac{\pi}{2} + \psi \operatorname{sign}\dot\beta, \qquad
 /// q = \tfrac12 \rho\, C_\mathrm{N}(\alpha)\, \dot\beta |\dot\beta|, \qquad
-/// q_\mathrm{rot} = C_\mathrm{rot}\, \rho\, |\dot\beta| \dot\psi \\
-/// F_\mathrm{N} + F_\mathrm{rot} &= q\, S_2 + q_\mathrm{rot} S_{21} \\
-/// M_\mathrm{aero} &= (q\, S_3 + q_\mathrm{rot} S_{22}) \cos\psi \\
+/// q_\mathrm{rot} = C_\mathrm{rot}\, \rho\, |\dot\beta| \dot\psi \cr
+/// F_\mathrm{N} + F_\mathrm{rot} &= q\, S_2 + q_\mathrm{rot} S_{21} \cr
+/// M_\mathrm{aero} &= (q\, S_3 + q_\mathrm{rot} S_{22}) \cos\psi \cr
 /// M_\mathrm{pitch} &= q\, d(\alpha)\, S_{22} + \tfrac12 q_\mathrm{rot} S_{31}
 /// + \tfrac18 \rho\, C_\mathrm{rd} |\dot\psi| \dot\psi\, S_{40}
 /// \end{aligned}
@@ -286,9 +286,9 @@ struct WingsAtPitch {
 /// \f[
 /// \begin{aligned}
 /// h_b &= 2 (I_\psi - m_{rr}) \sin\psi \cos\psi\, \dot\beta \dot\psi - (P + m_{rp}) \sin\psi\, \dot\psi^2, \qquad
-/// h_p = -(I_\psi - m_{rr}) \sin\psi \cos\psi\, \dot\beta^2 \\
+/// h_p = -(I_\psi - m_{rr}) \sin\psi \cos\psi\, \dot\beta^2 \cr
 /// \ddot\psi_0 &= -\frac{h_p + k_\psi \psi + c_\psi \dot\psi + M_\mathrm{pitch}}{M_{pp}}, \qquad
-/// \kappa = -\frac{M_{bp}}{M_{pp}} \\
+/// \kappa = -\frac{M_{bp}}{M_{pp}} \cr
 /// I &= M_{bb} - \frac{M_{bp}^2}{M_{pp}}, \qquad M_0 = h_b + M_\mathrm{aero} + M_{bp} \ddot\psi_0
 /// \end{aligned}
 /// \f]
@@ -338,7 +338,7 @@ S chordwise_lift(const PitchingWings<S>& p, const PitchState<S>& state) {
 /// chord that counts.
 /// \f[
 /// \begin{aligned}
-/// F_\mathrm{am} &= \dot p_\mathrm{n} = m_r (\ddot\beta \cos\psi - \dot\beta \dot\psi \sin\psi) + m_p \ddot\psi \\
+/// F_\mathrm{am} &= \dot p_\mathrm{n} = m_r (\ddot\beta \cos\psi - \dot\beta \dot\psi \sin\psi) + m_p \ddot\psi \cr
 /// L &= -(F_\mathrm{N} + F_\mathrm{rot} + F_\mathrm{am}) \sin\psi - s_\mathrm{L}\, p_\mathrm{n} \dot\psi \cos\psi
 /// \end{aligned}
 /// \f]

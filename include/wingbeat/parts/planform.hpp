@@ -169,7 +169,7 @@ ChordMoments<S> chord_moments(const Planform<S>& p, const S& count) {
 /// \f[
 /// \begin{aligned}
 /// S_{22} = N_\mathrm{w} \int c^2 r^2\,\mathrm{d}r
-/// &= N_\mathrm{w} c_0^2 R \left( \tfrac{2}{15} R^2 + \tfrac12 d R + \tfrac23 d^2 \right) && \text{semi-ellipse} \\
+/// &= N_\mathrm{w} c_0^2 R \left( \tfrac{2}{15} R^2 + \tfrac12 d R + \tfrac23 d^2 \right) && \text{semi-ellipse} \cr
 /// &= N_\mathrm{w} c_0^2 R \left( \tfrac13 R^2 + d R + d^2 \right) && \text{rectangle}
 /// \end{aligned}
 /// \f]
@@ -247,7 +247,7 @@ struct PitchChordMoments {
 /// \f[
 /// \begin{aligned}
 /// S_{21} &= N_\mathrm{w} c_0^2 R \left( \tfrac14 R + \tfrac23 d \right), &
-/// S_{30} &= \tfrac{3 \pi}{16} N_\mathrm{w} c_0^3 R, \\
+/// S_{30} &= \tfrac{3 \pi}{16} N_\mathrm{w} c_0^3 R, \cr
 /// S_{31} &= N_\mathrm{w} c_0^3 R \left( \tfrac15 R + \tfrac{3 \pi}{16} d \right), &
 /// S_{40} &= \tfrac{8}{15} N_\mathrm{w} c_0^4 R
 /// \end{aligned}

@@ -69,9 +69,9 @@ CrankGeometry<S> geometry_of(const SliderCrank<S>& c) {
 /// \begin{aligned}
 /// y' &= r_\mathrm{c} (\cos\theta + \sin\theta \tan\gamma), \qquad
 /// y'' = r_\mathrm{c} \left( \cos\theta \tan\gamma - \sin\theta
-/// - \frac{r_\mathrm{c}}{l} \frac{\sin^2\theta}{\cos^3\gamma} \right) \\
+/// - \frac{r_\mathrm{c}}{l} \frac{\sin^2\theta}{\cos^3\gamma} \right) \cr
 /// B_1 &= \frac{\mathrm{d}\beta}{\mathrm{d}\theta} = \frac{y'}{H} \cos^2\beta, \qquad
-/// B_2 = \frac{\mathrm{d}^2\beta}{\mathrm{d}\theta^2} = \frac{y''}{H} \cos^2\beta - 2 \tan\beta\, B_1^2 \\
+/// B_2 = \frac{\mathrm{d}^2\beta}{\mathrm{d}\theta^2} = \frac{y''}{H} \cos^2\beta - 2 \tan\beta\, B_1^2 \cr
 /// h &= y' \cos\gamma = r_\mathrm{c} (\sin\theta \sin\gamma + \cos\theta \cos\gamma)
 /// \end{aligned}
 /// \f]

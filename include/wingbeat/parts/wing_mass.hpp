@@ -44,10 +44,10 @@ struct WingMass {
 /// offset d and ribs at \f$r_n = d + n R/(n_\mathrm{r} + 1)\f$, n = 1 to n_r (model.md section 14):
 /// \f[
 /// \begin{aligned}
-/// m &= \sigma \int c\,\mathrm{d}r + \lambda R + \sum_n \lambda_\mathrm{r}\, c(r_n) \\
+/// m &= \sigma \int c\,\mathrm{d}r + \lambda R + \sum_n \lambda_\mathrm{r}\, c(r_n) \cr
 /// J_\mathrm{w} &= \sigma \int c\, r^2\,\mathrm{d}r + \lambda\, \frac{(R + d)^3 - d^3}{3}
-/// + \sum_n \lambda_\mathrm{r}\, c(r_n)\, r_n^2 \\
-/// I_\psi &= \frac{\sigma}{3} \int c^3\,\mathrm{d}r + \sum_n \lambda_\mathrm{r} \frac{c(r_n)^3}{3} \\
+/// + \sum_n \lambda_\mathrm{r}\, c(r_n)\, r_n^2 \cr
+/// I_\psi &= \frac{\sigma}{3} \int c^3\,\mathrm{d}r + \sum_n \lambda_\mathrm{r} \frac{c(r_n)^3}{3} \cr
 /// P &= \frac{\sigma}{2} \int c^2 r\,\mathrm{d}r + \sum_n \lambda_\mathrm{r} \frac{c(r_n)^2 r_n}{2}
 /// \end{aligned}
 /// \f]

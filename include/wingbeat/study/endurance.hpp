@@ -97,7 +97,7 @@ struct EnduranceResult {
 /// \f[
 /// \begin{aligned}
 /// \tau_\mathrm{w} \frac{\mathrm{d}(T_\mathrm{w} - T_\mathrm{case})}{\mathrm{d}t}
-/// &= R_\mathrm{th1} P_\mathrm{cu} - (T_\mathrm{w} - T_\mathrm{case}) \\
+/// &= R_\mathrm{th1} P_\mathrm{cu} - (T_\mathrm{w} - T_\mathrm{case}) \cr
 /// \tau_\mathrm{c} \frac{\mathrm{d}T_\mathrm{case}}{\mathrm{d}t}
 /// &= T_\mathrm{amb} + R_\mathrm{th2} (P_\mathrm{cu} + P_\mathrm{visc} + P_\mathrm{motor}) - T_\mathrm{case}
 /// \end{aligned}

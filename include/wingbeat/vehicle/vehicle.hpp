@@ -312,7 +312,7 @@ struct IntermediateTerms {
 /// load_free_friction() and \f$T_\mathrm{x}\f$ the load's:
 /// \f[
 /// \begin{aligned}
-/// A g &= I B_1, \qquad C g = I B_2 \omega^2 + M_0 + N_\mathrm{w} k \beta \\
+/// A g &= I B_1, \qquad C g = I B_2 \omega^2 + M_0 + N_\mathrm{w} k \beta \cr
 /// D &= e \left( K i - b\, \omega - T_\mathrm{c,m} \operatorname{sign}\omega \right) - T_\mathrm{l} - T_\mathrm{x}
 /// \end{aligned}
 /// \f]
@@ -368,7 +368,7 @@ template <bool every_law = true, template <Scalar> class V, Scalar S>
 /// \f[
 /// \begin{aligned}
 /// \dot\omega &= \frac{D - C (h + s \mu r_\mathrm{e})}{e J + A (h + s \mu r_\mathrm{e})}, \qquad
-/// F = A \dot\omega + C = \frac{e J\, C + A D}{e J + A (h + s \mu r_\mathrm{e})} \\
+/// F = A \dot\omega + C = \frac{e J\, C + A D}{e J + A (h + s \mu r_\mathrm{e})} \cr
 /// \ddot\beta &= B_1 \dot\omega + B_2 \omega^2, \qquad
 /// T_\mathrm{m} = F h + \mu r_\mathrm{e} |F| \operatorname{sign}\omega + T_\mathrm{l} + T_\mathrm{x}
 /// \end{aligned}
