@@ -8,6 +8,7 @@
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/files/design_file.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace {
 

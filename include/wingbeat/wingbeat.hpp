@@ -21,6 +21,7 @@
 #include <string_view>
 #include <vector>
 
+#include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/report/describe.hpp"

@@ -12,6 +12,7 @@
 #include "reproduction/trend_figure.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/report/report.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat::reproduction {
 namespace {

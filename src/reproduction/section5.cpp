@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wingbeat/vehicle/vehicle.hpp"
+
 #include "reproduction/trend_figure.hpp"
 
 namespace wingbeat::reproduction {

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "wingbeat/cycle/integrals_audit.hpp"
+
 namespace wingbeat::detail {
 namespace {
 

@@ -10,7 +10,7 @@ namespace wingbeat {
 namespace {
 
 using Finding = SearchFinding::Kind;
-using Place = SearchFinding::Place;
+using VoltagePoint = SearchFinding::VoltagePoint;
 
 const DomainEvidence falls{DomainLimit::angle_of_attack, DomainEvidence::Quantity::angle_of_attack_min, -5.0, 0.0,
                            90.0};
@@ -33,13 +33,13 @@ std::string said(const SearchFinding& f) {
 }
 
 TEST(DescribeSearch, Frequency) {
-  const auto position = [](Finding kind, SearchRange range = SearchRange::domain) {
+  const auto finding_of = [](Finding kind, SearchRange range = SearchRange::domain) {
     return finding(kind, Sought::frequency, range);
   };
-  SearchFinding f = position(Finding::reached);
+  SearchFinding f = finding_of(Finding::reached);
   f.evidence = {.kind = StatusEvidence::Kind::orbit, .frequency = 60.0};
   EXPECT_EQ(said(f), "steady flapping at 60 Hz");
-  f = position(Finding::never_flaps);
+  f = finding_of(Finding::never_flaps);
   f.last_voltage = 12.5;
   f.status = FlappingStatus::stalled;
   f.evidence = stalls;
@@ -47,22 +47,22 @@ TEST(DescribeSearch, Frequency) {
       said(f),
       "it flaps at no voltage up to 12.5 V; there it is stalled: the motor never starts: its stall torque 0.001 N "
       "m does not exceed the constant friction 0.002 N m");
-  f = position(Finding::out_of_range);
-  f.at = Place{9.0, 55.0};
+  f = finding_of(Finding::out_of_range);
+  f.point = VoltagePoint{9.0, 55.0};
   f.limits = {falls};
   EXPECT_EQ(said(f),
             "60 Hz cannot be reached inside the domain of validity: at 9 V, where it flaps at 55 Hz, the angle of "
             "attack falls to -5 deg (the coefficients hold from 0 to 90 deg)");
-  f.most = Place{8.0, 50.0};
+  f.max_point = VoltagePoint{8.0, 50.0};
   EXPECT_EQ(said(f),
             "60 Hz cannot be reached inside the domain of validity: at 9 V, where it flaps at 55 Hz, the angle of "
             "attack falls to -5 deg (the coefficients hold from 0 to 90 deg); inside it flaps at 50 Hz at most, at 8 "
             "V");
-  f = position(Finding::out_of_range, SearchRange::extrapolation);
-  f.at = Place{9.0, 55.0};
+  f = finding_of(Finding::out_of_range, SearchRange::extrapolation);
+  f.point = VoltagePoint{9.0, 55.0};
   EXPECT_EQ(said(f),
             "60 Hz cannot be reached: at 9 V, where it flaps at 55 Hz, the angle of attack falls below -360 deg");
-  f = position(Finding::beyond_any_voltage);
+  f = finding_of(Finding::beyond_any_voltage);
   f.stroke_amplitude = 50.0 / degrees_per_radian;
   f.highest_frequency = 41.0;
   EXPECT_EQ(said(f),
@@ -72,60 +72,60 @@ TEST(DescribeSearch, Frequency) {
   EXPECT_EQ(said(f),
             "60 Hz cannot be reached in the range that is searched: at a stroke amplitude of 50 deg, whatever the "
             "voltage, wings that flap at more than 41 Hz pass an angle of attack of -360 deg or Mach 3");
-  f = position(Finding::jumps);
-  f.at = Place{9.0, 61.0};
-  f.least = Place{9.0, 40.0};
+  f = finding_of(Finding::jumps);
+  f.point = VoltagePoint{9.0, 61.0};
+  f.min_point = VoltagePoint{9.0, 40.0};
   EXPECT_EQ(said(f), "at 9 V the flapping frequency jumps from 40 Hz to 61 Hz: 60 Hz in between cannot be held");
-  f = position(Finding::too_low_at_first);
-  f.at = Place{0.5, 61.0};
+  f = finding_of(Finding::too_low_at_first);
+  f.point = VoltagePoint{0.5, 61.0};
   EXPECT_EQ(said(f), "60 Hz cannot be reached: at 0.5 V, the lowest voltage tried, it flaps at 61 Hz already");
-  f = position(Finding::too_low_at_onset);
-  f.at = Place{0.5, 61.0};
+  f = finding_of(Finding::too_low_at_onset);
+  f.point = VoltagePoint{0.5, 61.0};
   f.evidence = stalls;
   EXPECT_EQ(said(f),
             "60 Hz cannot be reached: from rest it flaps only above 0.5 V, and there at 61 Hz already; below, it is "
             "stalled (the motor never starts: its stall torque 0.001 N m does not exceed the constant friction 0.002 N "
             "m)");
-  f = position(Finding::too_high);
+  f = finding_of(Finding::too_high);
   f.last_voltage = 20.0;
-  f.most = Place{12.0, 58.0};
+  f.max_point = VoltagePoint{12.0, 58.0};
   EXPECT_EQ(said(f), "60 Hz cannot be reached: up to 20 V it flaps at 58 Hz at most, at 12 V");
 }
 
 TEST(DescribeSearch, Lift) {
-  const auto position = [](Finding kind, SearchRange range = SearchRange::domain) {
+  const auto finding_of = [](Finding kind, SearchRange range = SearchRange::domain) {
     return finding(kind, Sought::lift, range);
   };
-  EXPECT_EQ(said(position(Finding::no_wings_in_air)),
+  EXPECT_EQ(said(finding_of(Finding::no_wings_in_air)),
             "0.05 N cannot be reached: without wings in air there is no lift");
-  SearchFinding f = position(Finding::out_of_range);
-  f.at = Place{9.0, 0.04};
+  SearchFinding f = finding_of(Finding::out_of_range);
+  f.point = VoltagePoint{9.0, 0.04};
   f.limits = {falls};
   EXPECT_EQ(said(f),
             "0.05 N cannot be reached inside the domain of validity: it leaves it at every voltage at which it flaps; "
             "at 9 V the angle of attack falls to -5 deg (the coefficients hold from 0 to 90 deg)");
-  f.least = Place{1.0, 0.01};
-  f.most = Place{8.0, 0.045};
+  f.min_point = VoltagePoint{1.0, 0.01};
+  f.max_point = VoltagePoint{8.0, 0.045};
   EXPECT_EQ(said(f),
             "0.05 N cannot be reached inside the domain of validity: at 9 V, where it lifts so much, the angle of "
             "attack falls to -5 deg (the coefficients hold from 0 to 90 deg); inside it lifts from 0.01 N, at 1 V, to "
             "0.045 N, at 8 V");
-  f = position(Finding::jumps);
-  f.at = Place{9.0, 0.06};
-  f.least = Place{9.0, 0.04};
+  f = finding_of(Finding::jumps);
+  f.point = VoltagePoint{9.0, 0.06};
+  f.min_point = VoltagePoint{9.0, 0.04};
   EXPECT_EQ(said(f), "at 9 V the mean lift jumps from 0.04 N to 0.06 N: 0.05 N in between cannot be held");
-  f = position(Finding::too_low_at_first, SearchRange::extrapolation);
-  f.at = Place{0.5, 0.06};
+  f = finding_of(Finding::too_low_at_first, SearchRange::extrapolation);
+  f.point = VoltagePoint{0.5, 0.06};
   EXPECT_EQ(said(f), "0.05 N cannot be reached: at 0.5 V, the lowest voltage tried, it lifts 0.06 N already");
-  f = position(Finding::too_low_at_onset);
-  f.at = Place{0.5, 0.06};
+  f = finding_of(Finding::too_low_at_onset);
+  f.point = VoltagePoint{0.5, 0.06};
   f.evidence = stalls;
   EXPECT_EQ(said(f),
             "0.05 N cannot be reached inside the domain of validity: from rest it flaps only above 0.5 V, and there "
             "lifts 0.06 N already; below, it is stalled (the motor never starts: its stall torque 0.001 N m does not "
             "exceed the constant friction 0.002 N m)");
-  f = position(Finding::too_high);
-  f.most = Place{12.0, 0.045};
+  f = finding_of(Finding::too_high);
+  f.max_point = VoltagePoint{12.0, 0.045};
   f.last_voltage = 20.0;
   EXPECT_EQ(said(f),
             "0.05 N cannot be reached inside the domain of validity: it lifts 0.045 N at most, at 12 V (voltages up to "

@@ -255,8 +255,8 @@ TEST(DomainOfTolerance, SamplesOutsideNeitherHoverNorCount) {
   EXPECT_EQ(kept.hover->count, hovering);
   EXPECT_EQ(free.hover->count, all);
   EXPECT_LT(hovering, all);
-  EXPECT_GE(kept.find("angle_of_attack_min_deg")->least, 0.0);
-  EXPECT_LT(free.find("angle_of_attack_min_deg")->least, 0.0);
+  EXPECT_GE(kept.find("angle_of_attack_min_deg")->min, 0.0);
+  EXPECT_LT(free.find("angle_of_attack_min_deg")->min, 0.0);
 }
 
 TEST(DomainOfEndurance, NoHoverIsClaimedOutside) {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/cycle/integrals_audit.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 

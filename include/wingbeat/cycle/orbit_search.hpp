@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "wingbeat/cycle/direct_balance.hpp"
-#include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/extremes.hpp"
+#include "wingbeat/cycle/integrals_audit.hpp"
 #include "wingbeat/cycle/pitch_metrics.hpp"
 #include "wingbeat/cycle/recorded_cycle.hpp"
 #include "wingbeat/cycle/static_balance.hpp"

@@ -70,9 +70,9 @@ struct StopImpact {
 /// \begin{aligned}
 /// e J \Delta\omega &= -\hat F (h + s \mu r_\mathrm{e}), \qquad
 /// M_{bb} \Delta\dot\beta + M_{bp} \Delta\dot\psi = \hat F g, \qquad \Delta\dot\beta = B_1 \Delta\omega \cr
-/// W_\mathrm{motor} &= -e J \Delta\omega\, \bar\omega, \qquad W_\mathrm{gear} = -(1 - e) J \Delta\omega\, \bar\omega \cr
-/// W_\mathrm{friction} &= \mu r_\mathrm{e} |\hat F \bar\omega|, \qquad
-/// W_\mathrm{residual} = \hat F (h - g B_1)\, \bar\omega
+/// W_\mathrm{motor} &= -e J \Delta\omega\, \bar\omega, \qquad W_\mathrm{gear} = -(1 - e) J \Delta\omega\, \bar\omega
+/// \cr W_\mathrm{friction} &= \mu r_\mathrm{e} |\hat F \bar\omega|, \qquad W_\mathrm{residual} = \hat F (h - g B_1)\,
+/// \bar\omega
 /// \end{aligned}
 /// \f]
 template <template <Scalar> class V, Scalar S>
