@@ -9,7 +9,9 @@
 
 #include <algorithm>
 #include <optional>
+#include <unordered_map>
 #include <utility>
+#include <vector>
 
 #include "files/toml_prevalidation.hpp"
 #include "wingbeat/core/text.hpp"
@@ -56,22 +58,45 @@ std::string reason_in(const toml::parse_error& error) {
 class TomlOffsets {
  public:
   explicit TomlOffsets(std::string_view text) : text_(text), lines_{text.starts_with("\xEF\xBB\xBF") ? 3u : 0u} {
-    for (auto position = text.find('\n'); position != std::string_view::npos; position = text.find('\n', position + 1))
+    for (auto position = text.find('\n'); position != std::string_view::npos;
+         position = text.find('\n', position + 1)) {
       lines_.push_back(position + 1);
+    }
+    for (std::size_t line = 0; line < lines_.size(); ++line) {
+      const std::size_t end = line + 1 < lines_.size() ? lines_[line + 1] : text.size();
+      if (end - lines_[line] <= stride) continue;
+      std::vector<std::size_t>& marks = long_lines_[line];
+      for (std::size_t position = lines_[line]; position < end; position = moved(position, stride)) {
+        marks.push_back(position);
+      }
+    }
   }
 
   std::size_t of(const toml::source_position& p) const {
-    std::size_t position = lines_[std::clamp<std::size_t>(p.line, 1, lines_.size()) - 1];
-    for (auto n = p.column; n > 1 && position < text_.size(); --n) {
+    const std::size_t line = std::clamp<std::size_t>(p.line, 1, lines_.size()) - 1;
+    const std::size_t columns = p.column > 0 ? p.column - 1 : 0;
+    const auto marks = long_lines_.find(line);
+    if (marks == long_lines_.end()) return moved(lines_[line], columns);
+    const std::size_t mark = std::min(columns / stride, marks->second.size() - 1);
+    return moved(marks->second[mark], columns - mark * stride);
+  }
+
+ private:
+  static constexpr std::size_t stride = 256;
+
+  /// By so many characters of UTF-8, but not beyond the text.
+  std::size_t moved(std::size_t position, std::size_t characters) const {
+    for (; characters > 0 && position < text_.size(); --characters) {
       do ++position;
       while (position < text_.size() && (static_cast<unsigned char>(text_[position]) & 0xC0) == 0x80);
     }
     return position;
   }
 
- private:
   std::string_view text_;
   std::vector<std::size_t> lines_;  ///< where they begin
+  /// Of lines longer than that, every 256th character: long tables stand in one line.
+  std::unordered_map<std::size_t, std::vector<std::size_t>> long_lines_;
 };
 
 TomlNode tree_of(const toml::node& node, const TomlOffsets& offsets) {

@@ -18,7 +18,7 @@ namespace wingbeat::design_file_test {
 using Overrides = std::vector<std::string>;
 
 inline const std::filesystem::path designs = std::filesystem::path(WINGBEAT_DATA) / "designs";
-inline const std::filesystem::path test_data = std::filesystem::path(WINGBEAT_DATA) / ".." / "tests" / "io" / "data";
+inline const std::filesystem::path test_data = std::filesystem::path(WINGBEAT_DATA) / ".." / "tests" / "files" / "data";
 
 // Line numbers count in the tests.
 inline const std::string vehicle_text = R"([vehicle]
