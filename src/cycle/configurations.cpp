@@ -11,6 +11,7 @@
 
 #ifdef WINGBEAT_LANES
 #include "wingbeat/core/pack.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 #endif
 
 namespace wingbeat {

@@ -9,6 +9,7 @@
 
 #include "wingbeat/cycle/recorded_cycle.hpp"
 #include "wingbeat/parts/drive_wave.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
 

@@ -6,6 +6,7 @@
 
 #include "wingbeat/cycle/direct_balance.hpp"
 #include "wingbeat/cycle/orbit_search.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
 namespace {

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "wingbeat/cycle/recorded_cycle.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

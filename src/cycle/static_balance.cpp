@@ -6,6 +6,7 @@
 
 #include "cycle/static_bounds.hpp"
 #include "wingbeat/core/certain.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

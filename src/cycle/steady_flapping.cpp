@@ -5,6 +5,7 @@
 #include "wingbeat/core/cancellation.hpp"
 #include "wingbeat/cycle/orbit_search.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

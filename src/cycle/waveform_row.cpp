@@ -1,7 +1,7 @@
 #include "wingbeat/cycle/waveform_row.hpp"
 
 #include "wingbeat/core/math.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

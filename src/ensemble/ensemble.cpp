@@ -17,6 +17,7 @@
 #include "wingbeat/ensemble/pack_blocks.hpp"
 #include "wingbeat/ensemble/pack_tables.hpp"
 #include "wingbeat/solve/collocation.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

@@ -2,6 +2,7 @@
 #include <memory>
 
 #include "wingbeat/vehicle/drive.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 #include "wingbeat/vehicle/pitch_motion.hpp"
 #include "wingbeat/wingbeat.hpp"
 

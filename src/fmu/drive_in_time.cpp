@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "wingbeat/core/jet.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::fmu {
 namespace {

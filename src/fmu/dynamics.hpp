@@ -6,6 +6,7 @@
 #include <array>
 
 #include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 #include "wingbeat/vehicle/pitch_motion.hpp"
 
 namespace wingbeat::fmu {

@@ -6,6 +6,7 @@
 #include "study/voltage_trials.hpp"
 #include "wingbeat/core/root.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

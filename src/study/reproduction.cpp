@@ -8,6 +8,7 @@
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/study/ensemble_frequency.hpp"
 #include "wingbeat/study/trend.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

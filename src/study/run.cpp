@@ -6,7 +6,7 @@
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/study/endurance.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

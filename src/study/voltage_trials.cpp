@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "wingbeat/cycle/orbit_gradient.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
 

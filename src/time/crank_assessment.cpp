@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "wingbeat/vehicle/motion.hpp"
+
 namespace wingbeat::detail {
 namespace {
 

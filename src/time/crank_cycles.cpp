@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "wingbeat/cycle/integrals_audit.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
 namespace {

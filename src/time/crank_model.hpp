@@ -13,8 +13,8 @@
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/parts/supply.hpp"
 #include "wingbeat/time/transient.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 #include "wingbeat/vehicle/pitch_motion.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat::detail {
 

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "time/crank_model.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
 

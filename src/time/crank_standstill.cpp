@@ -5,6 +5,7 @@
 
 #include "time/crank_start_up.hpp"
 #include "wingbeat/core/root.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
 

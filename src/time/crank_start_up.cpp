@@ -6,6 +6,7 @@
 
 #include "time/model_problem.hpp"
 #include "wingbeat/core/root.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
 namespace {

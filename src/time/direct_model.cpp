@@ -4,6 +4,7 @@
 
 #include "time/transient_tools.hpp"
 #include "wingbeat/cycle/direct_balance.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
 namespace {

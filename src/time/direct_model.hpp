@@ -9,7 +9,7 @@
 #include "time/driven_shaft.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/time/transient.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
 

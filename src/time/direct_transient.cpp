@@ -13,6 +13,7 @@
 #include "time/recorder.hpp"
 #include "time/transient_tools.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
 namespace {

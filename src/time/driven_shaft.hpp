@@ -7,6 +7,7 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/cycle/direct_balance.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
 

@@ -9,6 +9,7 @@
 #include "time/driven_shaft.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/time/transient.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 #include "wingbeat/vehicle/pitch_motion.hpp"
 
 namespace wingbeat::detail {

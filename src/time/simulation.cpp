@@ -13,6 +13,7 @@
 #include "time/simulation.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/vehicle/drive.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

@@ -423,8 +423,8 @@ std::span<const Parameter<S>> parameter_table() {
            "",
            {"translational-2022, normal-force-robofly (with pitch.stiffness), or a table of the keys below"},
            "translational-2022",
-           "lift and drag coefficient against angle of attack, eqs (12, 13); normal-force-robofly: C_L = 1.8 sin(2 alpha), "
-           "C_D = 1.95 - 1.5 cos(2 alpha), of both the component normal to the chord",
+           "lift and drag coefficient against angle of attack, eqs (12, 13); normal-force-robofly: "
+           "C_L = 1.8 sin(2 alpha), C_D = 1.95 - 1.5 cos(2 alpha), of both the component normal to the chord",
            {},
            "translational-2022"},
           [](const D& d) {

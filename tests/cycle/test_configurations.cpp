@@ -9,6 +9,7 @@
 #include "vehicle/reference_vehicle.hpp"
 #include "vehicle/wide_boxes.hpp"
 #include "wingbeat/cycle/configurations.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

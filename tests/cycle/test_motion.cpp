@@ -7,6 +7,7 @@
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

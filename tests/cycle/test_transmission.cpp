@@ -11,6 +11,7 @@
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/extremes.hpp"
 #include "wingbeat/solve/periodic.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

@@ -15,6 +15,7 @@
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/time/transient.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

@@ -196,8 +196,8 @@ TEST(DescribeEndurance, EveryEnd) {
   EXPECT_EQ(
       describe(r),
       no_mass +
-          "the battery's terminal voltage falls to the amplitude of the bridge's sine, 5.25 V, after 120 s, at a charge "
-          "of 0.125");
+          "the battery's terminal voltage falls to the amplitude of the bridge's sine, 5.25 V, after 120 s, at a "
+          "charge of 0.125");
   last.time = 0.0;
   last.terminal_voltage = 5.0;
   EXPECT_EQ(describe(r), "under load the battery gives the bridge 5 V, less than the amplitude of its sine, 5.25 V");

@@ -5,6 +5,7 @@
 
 #include "wingbeat/cycle/crank_system.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

@@ -7,6 +7,7 @@
 #include "scalars/arch/packs.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/ensemble/instruction_set.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

@@ -10,6 +10,7 @@
 #include "vehicle/random_vehicle.hpp"
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/solve/implicit_step.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

@@ -15,6 +15,7 @@
 #include "wingbeat/study/linear_model.hpp"
 #include "wingbeat/time/simulation.hpp"
 #include "wingbeat/time/transient.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

@@ -11,6 +11,7 @@
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/cycle/pitch_direct_system.hpp"
 #include "wingbeat/solve/periodic.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

@@ -5,6 +5,7 @@
 #include <random>
 
 #include "vehicle/hinged_design.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 #include "wingbeat/vehicle/pitch_motion.hpp"
 
 namespace wingbeat {

@@ -26,6 +26,7 @@
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 using namespace wingbeat;
 

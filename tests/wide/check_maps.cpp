@@ -161,8 +161,9 @@ int main(int argc, char** argv) {
   std::printf("%-21s %5s %5s | %6s %6s %8s %7s | %8s | %6s %6s | %4s\n%s", "kind", "flap", "drawn", "slopes", "beyond",
               "apart", "worst", "gain", "slopes", "beyond", "err", table.c_str());
   std::printf(
-      "first block: slopes against cycles beside the operating point; apart: largest distance over load by input; worst:\n"
-      "over what is allowed, the error that the differences show and 1e-5; gain: lift slope off the steady gain;\n"
-      "second block: slopes against the points of the maps, beyond their stated error: maps with kinks between points\n");
+      "first block: slopes against cycles beside the operating point; apart: largest distance over load by input;\n"
+      "worst: over what is allowed, the error that the differences show and 1e-5; gain: lift slope off the steady\n"
+      "gain; second block: slopes against the points of the maps, beyond their stated error: maps with kinks between\n"
+      "points\n");
   return wrong > 0 ? 1 : 0;
 }

@@ -7,6 +7,7 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/solve/iterate.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

@@ -14,6 +14,7 @@
 #include "wingbeat/cycle/pitch_metrics.hpp"
 #include "wingbeat/cycle/recorded_cycle.hpp"
 #include "wingbeat/solve/linear.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

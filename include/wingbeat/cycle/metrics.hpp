@@ -7,8 +7,8 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/cycle/metric_values.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 #include "wingbeat/vehicle/pitch_motion.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 

@@ -9,6 +9,7 @@
 #include "wingbeat/cycle/crank_turn.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/pitch_stops.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

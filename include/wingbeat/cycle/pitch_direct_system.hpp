@@ -8,6 +8,7 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/pitch_stops.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "wingbeat/cycle/statics.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

@@ -3,6 +3,7 @@
 
 #include "wingbeat/cycle/metric_values.hpp"
 #include "wingbeat/vehicle/forward.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

@@ -3,6 +3,7 @@
 #pragma once
 
 #include "wingbeat/ensemble/direct_pack_orbit.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

@@ -6,6 +6,7 @@
 #include "wingbeat/ensemble/direct_pack_metrics.hpp"
 #include "wingbeat/ensemble/direct_pack_newton.hpp"
 #include "wingbeat/ensemble/direct_pack_orbit.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

@@ -25,7 +25,7 @@
 #include "wingbeat/ensemble/direct_pack_blocks.hpp"
 #include "wingbeat/ensemble/direct_pack_rule.hpp"
 #include "wingbeat/ensemble/pack_lift.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

@@ -7,7 +7,7 @@
 #include "wingbeat/core/pack.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

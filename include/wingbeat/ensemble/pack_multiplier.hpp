@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "wingbeat/ensemble/pack_orbit.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

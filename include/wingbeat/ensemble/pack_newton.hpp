@@ -3,6 +3,7 @@
 #pragma once
 
 #include "wingbeat/ensemble/pack_orbit.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 namespace wingbeat {
 
 /// Nodes on segments that end at the switches as march() left them, with its trajectory interpolated there.

@@ -25,7 +25,7 @@
 #include "wingbeat/ensemble/pack_lift.hpp"
 #include "wingbeat/ensemble/pack_segment.hpp"
 #include "wingbeat/solve/collocation.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

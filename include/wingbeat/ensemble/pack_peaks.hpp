@@ -2,6 +2,7 @@
 #pragma once
 
 #include "wingbeat/ensemble/pack_orbit.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

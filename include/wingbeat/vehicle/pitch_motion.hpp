@@ -3,7 +3,7 @@
 #pragma once
 
 #include "wingbeat/parts/pitching_wings.hpp"
-#include "wingbeat/vehicle/vehicle.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 

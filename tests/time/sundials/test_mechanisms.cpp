@@ -10,6 +10,7 @@
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/solve/periodic.hpp"
 #include "wingbeat/time/transient.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

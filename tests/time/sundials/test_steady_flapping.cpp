@@ -12,6 +12,7 @@
 #include "wingbeat/solve/iterate.hpp"
 #include "wingbeat/solve/linear.hpp"
 #include "wingbeat/time/transient.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {

@@ -1,5 +1,6 @@
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/time/transient.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,0 +1,308 @@
+// The equations of motion of a vehicle; model.md section 2.
+#pragma once
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/scalar.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
+
+namespace wingbeat {
+
+/// Which smooth branch of the kinked equations holds, each +-1.
+template <Scalar S>
+struct Branch {
+  S stroke;             ///< sign of beta'
+  S force;              ///< sign of the rod force F
+  S direction;          ///< sign of omega; +1 in steady flapping
+  S stored_power;       ///< sign of (N_w J_w beta'' + N_w k beta) beta', for the reactive power (eq 23) alone
+  S pitching = S(1.0);  ///< -1 where the angle of attack is at its lower bound
+  S gear = S(1.0);      ///< sign of T_g omega: -1 where the load drives the motor
+};
+
+/// Everything that acts at one instant.
+template <Scalar S>
+struct Motion {
+  CrankKinematics<S> kinematics;
+  S crank_acceleration;   ///< omega' [rad/s2]
+  S inductive_voltage;    ///< \f$v - R_\mathrm{a} i - K \omega = L_\mathrm{a}\,\mathrm{d}i/\mathrm{d}t\f$ [V]
+  S current;              ///< i [A]
+  S voltage;              ///< v at the terminals [V]
+  S rod_force;            ///< F [N], positive when the crank pushes the slider up
+  S force_switch;         ///< has the sign of F on either branch while the equations have one solution [N kg m3]
+  S stroke_velocity;      ///< beta' [rad/s]
+  S stroke_acceleration;  ///< beta'' [rad/s2]
+  AeroLoads<S> aero;      ///< of all wings
+  S friction_torque;      ///< T_f of the mechanism [N m]; of a shaft that stands, all that holds it
+  S motor_torque;         ///< \f$T_\mathrm{m} = F h + T_\mathrm{f}\f$ [N m] (eq 5), behind the motor's own friction;
+                          ///< standing, K i
+  S gear_torque;          ///< T_g that the gearbox takes from the motor, along omega [N m] (model.md section 9)
+  S gear_loss;            ///< \f$(1 - e)\, T_\mathrm{g} \omega\f$ [W]
+  S stored_moment;        ///< \f$N_\mathrm{w} J_\mathrm{w} \ddot\beta + N_\mathrm{w} k \beta\f$ [N m]
+};
+
+/// J + A (h + s mu r_e) [kg m2], the divisor of omega' on the branch s (model.md section 2), with all of the added mass
+/// that there may be: that at rest; eta J behind a gearbox that loses torque. The equations have one solution while it
+/// is positive for s = +1 and s = -1 and the lever g is positive.
+/// \f[
+/// J + A (h + s \mu r_\mathrm{e}), \qquad A = \frac{(N_\mathrm{w} J_\mathrm{w} + J_\mathrm{a}) B_1}{g}
+/// \f]
+template <template <Scalar> class V, Scalar S>
+S effective_inertia(const V<S>& v, const CrankKinematics<S>& k, const S& s) {
+  const S A = (v.wing_count * v.wing_inertia + v.wings.added_inertia) * k.stroke_slope / k.wing_jacobian;
+  const S J = has_gear_loss(v.motor) ? S(v.motor.gear_efficiency * v.motor.inertia) : v.motor.inertia;
+  return J + A * (k.crank_jacobian + s * v.friction.radius);
+}
+
+/// Moment of all hinge springs, \f$N_\mathrm{w} k \beta\f$ [N m].
+template <template <Scalar> class V, Scalar S>
+S spring_moment(const V<S>& v, const CrankKinematics<S>& k) {
+  // Without springs the arc tangent is a tenth of all the work; its derivative by the stiffness is still wanted.
+  if (!ScalarTraits<S>::differentiates && !any<S>(v.spring.stiffness > S(0.0))) return S(0.0);
+  return v.wing_count * spring_loads(v.spring, stroke_angle(k)).moment;
+}
+
+/// All that depends on the crank angle alone.
+template <Scalar S>
+struct Configuration {
+  CrankKinematics<S> kinematics;
+  S spring_moment;  ///< N_w k beta [N m]
+};
+
+/// The configuration at a crank angle given by its sine and cosine.
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Configuration<S> configuration_at(const V<S>& v, const S& sin_theta, const S& cos_theta) {
+  Configuration<S> configuration;
+  configuration.kinematics = crank_kinematics(v.transmission, sin_theta, cos_theta);
+  configuration.spring_moment = spring_moment(v, configuration.kinematics);
+  return configuration;
+}
+
+/// What is known of an instant before the sign of the rod force.
+template <Scalar S>
+struct IntermediateTerms {
+  CrankKinematics<S> kinematics;
+  S omega;  ///< crank speed [rad/s]
+  MotorLoads<S> motor;
+  S stroke_velocity;  ///< beta' [rad/s]
+  AeroLoads<S> aero;  ///< of all wings
+  S spring_moment;    ///< N_w k beta [N m]
+  S load_free;        ///< friction of the mechanism that does not depend on F [N m]
+  S drive;            ///< K i - b omega - T_c,m - load_free - T_x [N m]; the motor's share of it behind a gearbox
+  S gear_ratio;       ///< e, torque behind the gearbox over torque before it [1]
+  S inertia;          ///< e J [kg m2]
+  S A_g;              ///< A g of F = A omega' + C [kg m2]
+  S C_g;              ///< C g [N m]
+  S force_switch;  ///< e J C_g + A_g drive: has the sign of F on either branch while there is one solution [N m kg m2]
+};
+
+/// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
+/// spring_moment() there, of wings that ask (inertia) beta'' + moment of the stroke, springs apart; `aero` is what the
+/// air does to them, `direction` the sign of omega, `gear` as in Branch. The wings' equation (1, 21) gives the rod
+/// force as \f$F = A \dot\omega + C\f$, with the inertia \f$I\f$ and the moment \f$M_0\f$, under the pitch law
+/// \f$I = N_\mathrm{w} J_\mathrm{w}\f$ with the added mass and \f$M_0 = M_\mathrm{aero}\f$. The torque D drives the
+/// crank before the rod force acts, e being that of gear_torque_ratio(), \f$T_\mathrm{l}\f$ that of
+/// load_free_friction() and \f$T_\mathrm{x}\f$ the load's:
+/// \f[
+/// \begin{aligned}
+/// A g &= I B_1, \qquad C g = I B_2 \omega^2 + M_0 + N_\mathrm{w} k \beta \cr
+/// D &= e \left( K i - b\, \omega - T_\mathrm{c,m} \operatorname{sign}\omega \right) - T_\mathrm{l} - T_\mathrm{x}
+/// \end{aligned}
+/// \f]
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline IntermediateTerms<S> terms_under(const V<S>& v, const CrankKinematics<S>& k,
+                                                               const S& N_k_beta, const S& omega, const S& i,
+                                                               const S& v_t, const S& direction, const S& gear,
+                                                               const AeroLoads<S>& aero, const S& inertia,
+                                                               const S& moment) {
+  IntermediateTerms<S> terms;
+  terms.kinematics = k;
+  terms.omega = omega;
+  terms.motor = motor_loads(v.motor, v_t, i, omega);
+  terms.stroke_velocity = k.stroke_slope * omega;
+  terms.aero = aero;
+  terms.spring_moment = N_k_beta;
+  // The motor's own friction acts before the gearbox.
+  const S mechanism = load_free_friction(v.friction, omega, direction), own = direction * v.motor.friction_torque;
+  terms.load_free = mechanism;
+  terms.gear_ratio = gear_torque_ratio(v.motor, gear);
+  terms.inertia = v.motor.inertia;
+  terms.drive = terms.motor.torque - terms.motor.drag_torque - (mechanism + own);
+  if (has_gear_loss(v.motor)) {
+    terms.inertia = terms.gear_ratio * v.motor.inertia;
+    terms.drive = terms.gear_ratio * (terms.motor.torque - terms.motor.drag_torque - own) - mechanism;
+  }
+
+  if constexpr (ScalarTraits<S>::reads_tables) terms.drive = terms.drive - v.load_torque;
+
+  // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
+  terms.A_g = inertia * k.stroke_slope;
+  terms.C_g = inertia * k.stroke_second_derivative * square(omega) + moment + terms.spring_moment;
+  terms.force_switch = terms.inertia * terms.C_g + terms.A_g * terms.drive;
+  return terms;
+}
+
+/// terms_under() of wings under the pitch law: `stroke` and `direction` are the signs of beta' and omega (model.md
+/// section 2), `pitching` and `gear` as in Branch, `every_law` as in aero_loads().
+template <bool every_law = true, template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline IntermediateTerms<S> terms_at(const V<S>& v, const CrankKinematics<S>& k,
+                                                            const S& N_k_beta, const S& omega, const S& i, const S& v_t,
+                                                            const S& stroke, const S& direction,
+                                                            const S& pitching = S(1.0), const S& gear = S(1.0)) {
+  const AeroLoads<S> aero = aero_loads<every_law>(v.wings, S(k.stroke_slope * omega), stroke, pitching);
+  S inertia = v.wing_count * v.wing_inertia;
+  if constexpr (every_law) inertia = inertia + aero.added_inertia;
+  return terms_under<V, S>(v, k, N_k_beta, omega, i, v_t, direction, gear, aero, inertia, aero.moment);
+}
+
+/// Rod force and accelerations of an instant, on a given branch (model.md section 2, eqs 1, 5-11, 21). With A, C and
+/// the driving torque D of terms_under(), and \f$s = \operatorname{sign} F \operatorname{sign}\omega\f$ on that
+/// branch:
+/// \f[
+/// \begin{aligned}
+/// \dot\omega &= \frac{D - C (h + s \mu r_\mathrm{e})}{e J + A (h + s \mu r_\mathrm{e})}, \qquad
+/// F = A \dot\omega + C = \frac{e J\, C + A D}{e J + A (h + s \mu r_\mathrm{e})} \cr
+/// \ddot\beta &= B_1 \dot\omega + B_2 \omega^2, \qquad
+/// T_\mathrm{m} = F h + \mu r_\mathrm{e} |F| \operatorname{sign}\omega + T_\mathrm{l} + T_\mathrm{x}
+/// \end{aligned}
+/// \f]
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const IntermediateTerms<S>& terms, const S& i,
+                                                  const S& v_t, const Branch<S>& branch) {
+  Motion<S> m;
+  m.kinematics = terms.kinematics;
+  const CrankKinematics<S>& k = m.kinematics;
+  const S J = terms.inertia;
+  const S g = k.wing_jacobian;
+  const S omega2 = square(terms.omega);
+  // mu r_e |F| sign(omega) = s mu r_e F with s = sign(F) sign(omega), on this branch.
+  const S lever = k.crank_jacobian + branch.force * branch.direction * v.friction.radius;
+  const S inertia_g = J * g + terms.A_g * lever;
+  const S divisor = inverse_of(inertia_g);
+
+  m.current = i;
+  m.voltage = v_t;
+  m.stroke_velocity = terms.stroke_velocity;
+  m.aero = terms.aero;
+  m.force_switch = terms.force_switch;
+  m.rod_force = terms.force_switch * divisor;
+  m.crank_acceleration = (terms.drive * g - terms.C_g * lever) * divisor;
+  m.stroke_acceleration = k.stroke_slope * m.crank_acceleration + k.stroke_second_derivative * omega2;
+  m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + terms.load_free;
+  m.motor_torque = m.rod_force * k.crank_jacobian + m.friction_torque;
+  if constexpr (ScalarTraits<S>::reads_tables) m.motor_torque = m.motor_torque + v.load_torque;
+  m.gear_torque = m.gear_loss = S(0.0);
+  if (has_gear_loss(v.motor)) {
+    m.gear_torque =
+        branch.direction * (terms.motor.torque - terms.motor.drag_torque - v.motor.inertia * m.crank_acceleration) -
+        v.motor.friction_torque;
+    m.gear_loss = (S(1.0) - terms.gear_ratio) * m.gear_torque * branch.direction * terms.omega;
+  }
+  m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + terms.spring_moment;
+  m.inductive_voltage = terms.motor.inductive_voltage;
+  return m;
+}
+
+/// The levers of a direct drive, whose shaft angle is the stroke angle itself. The "rod force" is then the torque
+/// passed on to the wings [N m]. It holds no position: that is the stroke angle of the state (model.md section 6).
+/// \f[
+/// B_1 = g = h = 1, \qquad B_2 = 0
+/// \f]
+template <Scalar S>
+CrankKinematics<S> direct_kinematics() {
+  return {S(0.0), S(0.0), S(1.0), S(0.0), S(1.0), S(1.0)};
+}
+
+/// Rod force and accelerations in a configuration, at crank speed omega [rad/s] and current i [A] under the terminal
+/// voltage v_t [V], on a given branch.
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const Configuration<S>& configuration, const S& omega,
+                                                  const S& i, const S& v_t, const Branch<S>& branch) {
+  const IntermediateTerms<S> terms = terms_at(v, configuration.kinematics, configuration.spring_moment, omega, i, v_t,
+                                              branch.stroke, branch.direction, branch.pitching, branch.gear);
+  return motion_on(v, terms, i, v_t, branch);
+}
+
+/// motion_at() at the crank angle theta, given by sine and cosine.
+template <template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const S& sin_theta, const S& cos_theta, const S& omega,
+                                                  const S& i, const S& v_t, const Branch<S>& branch) {
+  return motion_at(v, configuration_at(v, sin_theta, cos_theta), omega, i, v_t, branch);
+}
+
+/// Voltage at the motor terminals, \f$v - R_\mathrm{i} i\f$ [V], under the current i [A], where the supply drives
+/// `voltage` v [V].
+template <template <Scalar> class V, Scalar S>
+S terminal_voltage(const V<S>& v, const S& voltage, const S& i) {
+  return voltage - v.source_resistance * i;
+}
+
+/// All resistance that the current passes, \f$R_\mathrm{a} + R_\mathrm{i}\f$ [ohm].
+template <template <Scalar> class V, Scalar S>
+S circuit_resistance(const V<S>& v) {
+  return v.motor.armature_resistance + v.source_resistance;
+}
+
+/// The current [A] without inductance, where the supply drives `voltage` v [V] (eq 11 with L_a = 0).
+/// \f[
+/// i = \frac{v - K \omega}{R_\mathrm{a} + R_\mathrm{i}}
+/// \f]
+template <template <Scalar> class V, Scalar S>
+S algebraic_current(const V<S>& v, const S& voltage, const S& omega) {
+  return (voltage - v.motor.torque_constant * omega) / circuit_resistance(v);
+}
+
+/// Steady speed without load and friction [rad/s]: the closed form of the wingless condition.
+/// \f[
+/// \omega_0 = \frac{K v}{K^2 + (R_\mathrm{a} + R_\mathrm{i})\, b}
+/// \f]
+template <template <Scalar> class V, Scalar S>
+S no_load_speed(const V<S>& v) {
+  const S& K = v.motor.torque_constant;
+  return K * v.voltage / (K * K + circuit_resistance(v) * v.motor.viscous_damping);
+}
+
+/// Angle that a crank turns by at the speed without load while its motor's current decays by a factor of e [rad].
+/// \f[
+/// \frac{L_\mathrm{a}}{R_\mathrm{a} + R_\mathrm{i}}\, \omega_0
+/// \f]
+template <template <Scalar> class V, Scalar S>
+S electrical_lag(const V<S>& v) {
+  return v.motor.armature_inductance / circuit_resistance(v) * no_load_speed(v);
+}
+
+/// Below such an angle of crank or supply, or share of the motor's mechanical time constant, the current is
+/// quasi-steady: it differs from v / R - K omega / R by less, and L_a di/dt is a difference of voltages that rounding
+/// outweighs.
+inline constexpr double quasi_steady_lag = 1e-9;
+
+/// Whether the current is a state of its own, for every solver: elsewhere it is algebraic_current(), as without
+/// inductance.
+template <template <Scalar> class V, Scalar S>
+bool has_current_state(const V<S>& v) {
+  const double L = value_of(v.motor.armature_inductance), R = value_of(circuit_resistance(v));
+  const double K = value_of(v.motor.torque_constant);
+  const double rate = std::fmax(K * K / (R * value_of(v.motor.inertia)), two_pi * value_of(v.drive_frequency));
+  return L * std::fmax(rate, value_of(no_load_speed(v))) > quasi_steady_lag * R;
+}
+
+/// Kinetic energy of all wings, without the air that moves with them, and elastic energy of all hinge springs [J].
+/// \f[
+/// E_\mathrm{w} = \tfrac12 N_\mathrm{w} J_\mathrm{w} \dot\beta^2 + \tfrac12 N_\mathrm{w} k \beta^2
+/// \f]
+template <template <Scalar> class V, Scalar S>
+S wing_energy(const V<S>& v, const CrankKinematics<S>& k, const S& stroke_velocity) {
+  const S kinetic = S(0.5) * v.wing_count * v.wing_inertia * square(stroke_velocity);
+  if (!ScalarTraits<S>::differentiates && !any<S>(v.spring.stiffness > S(0.0))) return kinetic;
+  return kinetic + v.wing_count * spring_loads(v.spring, stroke_angle(k)).energy;
+}
+
+/// Energy of rotor, wings, springs and inductance [J], with wing_energy() \f$E_\mathrm{w}\f$.
+/// \f[
+/// E = \tfrac12 J \omega^2 + E_\mathrm{w} + \tfrac12 L_\mathrm{a} i^2
+/// \f]
+template <template <Scalar> class V, Scalar S>
+S stored_energy(const V<S>& v, const CrankKinematics<S>& k, const S& omega, const S& i) {
+  return S(0.5) * v.motor.inertia * square(omega) + wing_energy(v, k, S(k.stroke_slope * omega)) +
+         S(0.5) * v.motor.armature_inductance * square(i);
+}
+
+}  // namespace wingbeat
