@@ -35,6 +35,16 @@ std::string bytes_of(const fs::path& file) {
   return bytes;
 }
 
+fs::path required_file(const std::string& name, const char* what) {
+  fs::path file = module_file(name);
+  if (file.empty()) {
+    throw std::runtime_error(fmt::format(
+        "{}, {}, is not installed (in a checkout: cmake --build --preset release --target wingbeat_modules)", name,
+        what));
+  }
+  return file;
+}
+
 /// A drawing of the mechanism; empty where gnuplot is not installed.
 std::string icon_of(const Design<double>& design) {
   try {
@@ -53,8 +63,8 @@ int run(const ExportArguments& arguments) {
   options.identifier = fmu::identifier_of(fs::path(arguments.output).stem().string());
   const Design<double> design = read_design(arguments.vehicle, arguments.overrides);
   OutputFile output("-o", arguments.output, OutputRules{".fmu", arguments.force});
-  const fs::path linux_binary = module_file("wingbeat-fmu.so"), windows_binary = module_file("wingbeat-fmu.dll");
-  if (linux_binary.empty()) throw std::runtime_error("wingbeat-fmu.so, the binary of all FMUs, is not installed");
+  const fs::path linux_binary = required_file("wingbeat-fmu.so", "the binary of all FMUs");
+  const fs::path windows_binary = module_file("wingbeat-fmu.dll");
 
   const fmu::FmuContent content = fmu::fmu_content(design, options);
   const bool second = options.version == fmu::FmiVersion::fmi2;
@@ -70,8 +80,7 @@ int run(const ExportArguments& arguments) {
     files.emplace_back(second ? "model.png" : "terminalsAndIcons/icon.png", std::move(icon));
   }
   if (arguments.sources) {
-    const fs::path bundle = module_file("wingbeat-fmu-sources.zip");
-    if (bundle.empty()) throw std::runtime_error("wingbeat-fmu-sources.zip, the sources of FMUs, is not installed");
+    const fs::path bundle = required_file("wingbeat-fmu-sources.zip", "the sources of FMUs");
     for (auto& [name, bytes] : read_zip(bundle)) files.emplace_back("sources/" + name, std::move(bytes));
     files.emplace_back("sources/fmu.cpp", content.source);
     if (!second) files.emplace_back("sources/buildDescription.xml", content.build_description);

@@ -51,7 +51,7 @@ MechanismPose pose_of(const StrokeTable<double>&, double crank_angle, double str
 }  // namespace
 
 const PlanePoint& MechanismPose::at(std::string_view joint) const {
-  return std::find_if(joints.begin(), joints.end(), [&](const Joint& j) { return j.name == joint; })->at;
+  return std::find_if(joints.begin(), joints.end(), [&](const Joint& j) { return j.name == joint; })->position;
 }
 
 MechanismPose pose_of(const AnyTransmission<double>& t, double crank_angle, double stroke_angle, double wing_length) {

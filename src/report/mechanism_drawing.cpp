@@ -210,9 +210,9 @@ MechanismSketch mechanism_sketch(const AnyTransmission<double>& t, bool springs,
   }
   for (const MechanismPose::Joint& joint : pose.joints) {
     const bool is_shaft = t.type == TransmissionType::direct;
-    if (joint.name == "slider") sketch.box(joint.at, 1.55 * j, "#e0e0e0");
-    else if (joint.fixed && !is_shaft) sketch.ground(joint.at);
-    else if (joint.name == "pin" || joint.name == "rocker" || joint.fixed) sketch.circle(joint.at, j, "#ffffff");
+    if (joint.name == "slider") sketch.box(joint.position, 1.55 * j, "#e0e0e0");
+    else if (joint.fixed && !is_shaft) sketch.ground(joint.position);
+    else if (joint.name == "pin" || joint.name == "rocker" || joint.fixed) sketch.circle(joint.position, j, "#ffffff");
   }
   return sketch;
 }

@@ -99,7 +99,7 @@ std::string moving(const AnyTransmission<double>& transmission, const CycleCase&
   }
   for (const MechanismPose::Joint& joint : poses.front().joints) {
     if (!joint.fixed) continue;
-    const PlanePoint p{mm * joint.at.x, mm * joint.at.y};
+    const PlanePoint p{mm * joint.position.x, mm * joint.position.y};
     if (cycle.flapping_case.springs && joint.name != "axis") {
       std::string path;
       for (const PlanePoint& q : spring_spiral(p, 0.1 * H, 0.42 * H)) {

@@ -14,7 +14,8 @@ Evolve load_evolution() {
   const void* const symbol = module_symbol("wingbeat-evolution", "wingbeat_evolution_module", RTLD_LOCAL, reason);
   if (!symbol) {
     throw std::runtime_error(
-        "several objectives need the module with pagmo (Debian package wingbeat; to build it, libpagmo-dev): " +
+        "several objectives need the module with pagmo (Debian package wingbeat; in a checkout: cmake --build "
+        "--preset release --target wingbeat_modules): " +
         reason);
   }
   return *static_cast<const Evolve*>(symbol);

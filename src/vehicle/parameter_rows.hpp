@@ -418,19 +418,18 @@ std::span<const Parameter<S>> parameter_table() {
       number<S>(row(wing_limits_key::reynolds_number_max, "of a named set of coefficients 26000, else none",
                     "highest Reynolds number for which the coefficients hold"),
                 [](auto& d) -> auto& { return d.aerodynamics.reynolds_number_max; }),
-      text<S>(
-          {"aerodynamics.coefficients",
-           "",
-           {"translational-2022, normal-force-robofly (with pitch.stiffness), or a table of the keys below"},
-           "translational-2022",
-           "lift and drag coefficient against angle of attack, eqs (12, 13); normal-force-robofly: "
-           "C_L = 1.8 sin(2 alpha), C_D = 1.95 - 1.5 cos(2 alpha), of both the component normal to the chord",
-           {},
-           "translational-2022"},
-          [](const D& d) {
-            const std::string& name = d.aerodynamics.coefficients_name;
-            return name == "custom" || d.aerodynamics.coefficients.table ? std::string() : name;
-          }),
+      text<S>({"aerodynamics.coefficients",
+               "",
+               {"translational-2022, normal-force-robofly (with pitch.stiffness), or a table of the keys below"},
+               "translational-2022",
+               "lift and drag coefficient against angle of attack, eqs (12, 13); normal-force-robofly: "
+               "C_L = 1.8 sin(2 alpha), C_D = 1.95 - 1.5 cos(2 alpha), of both the component normal to the chord",
+               {},
+               "translational-2022"},
+              [](const D& d) {
+                const std::string& name = d.aerodynamics.coefficients_name;
+                return name == "custom" || d.aerodynamics.coefficients.table ? std::string() : name;
+              }),
       wave_number<S>(
           {"aerodynamics.coefficients.lift.offset", "1", range::any, "required", "A of C_L = A + B sin(C alpha + D)"},
           [](auto& c) -> auto& { return c.lift.offset; }),

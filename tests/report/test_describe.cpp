@@ -193,11 +193,10 @@ TEST(DescribeEndurance, EveryEnd) {
       no_mass + "after 120 s, at a charge of 0.125 and 5.25 V at the terminals, the battery no longer turns the crank");
   r.end = EnduranceEnd::bridge;
   last.metrics[Metric::voltage] = 5.25;
-  EXPECT_EQ(
-      describe(r),
-      no_mass +
-          "the battery's terminal voltage falls to the amplitude of the bridge's sine, 5.25 V, after 120 s, at a "
-          "charge of 0.125");
+  EXPECT_EQ(describe(r),
+            no_mass +
+                "the battery's terminal voltage falls to the amplitude of the bridge's sine, 5.25 V, after 120 s, at a "
+                "charge of 0.125");
   last.time = 0.0;
   last.terminal_voltage = 5.0;
   EXPECT_EQ(describe(r), "under load the battery gives the bridge 5 V, less than the amplitude of its sine, 5.25 V");

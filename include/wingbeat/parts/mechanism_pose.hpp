@@ -37,7 +37,7 @@ inline constexpr std::pair<const char*, LinkRole> names_of<LinkRole>[] = {
 struct MechanismPose {
   struct Joint {
     std::string_view name;  ///< "axis", "pin", "slider", "rocker", "hinge", "tip", "left_hinge", "left_tip"
-    PlanePoint at;
+    PlanePoint position;
     bool fixed = false;
   };
   struct Link {
