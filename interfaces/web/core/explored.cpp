@@ -146,8 +146,8 @@ Json mechanism_of(const Design<double>& design, const std::vector<double>& angle
   for (std::size_t joint = 0; !poses.empty() && joint < poses.front().joints.size(); ++joint) {
     std::vector<double> x, y;
     for (const MechanismPose& pose : poses) {
-      x.push_back(pose.joints[joint].at.x);
-      y.push_back(pose.joints[joint].at.y);
+      x.push_back(pose.joints[joint].position.x);
+      y.push_back(pose.joints[joint].position.y);
     }
     const std::string name(poses.front().joints[joint].name);
     columns.emplace_back(name + "_x", std::move(x));
