@@ -5,6 +5,17 @@
 #include "wingbeat/cycle/cycle_gradient.hpp"
 
 namespace wingbeat {
+
+// Those of orbit_gradient_*.cpp.
+extern template class CycleGradient<CrankSystem<double, 1>>;
+extern template class CycleGradient<CrankSystem<double, 2>>;
+extern template class CycleGradient<DirectSystem<double, 2>>;
+extern template class CycleGradient<DirectSystem<double, 3>>;
+extern template class CycleGradient<PitchCrankSystem<double, 3>>;
+extern template class CycleGradient<PitchCrankSystem<double, 4>>;
+extern template class CycleGradient<PitchDirectSystem<double, 4>>;
+extern template class CycleGradient<PitchDirectSystem<double, 5>>;
+
 namespace {
 
 const CycleSignal crank_speed{"crank_speed", "rad/s", 0.0};

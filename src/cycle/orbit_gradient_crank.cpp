@@ -1,6 +1,13 @@
 // Gradients of cranks whose wings follow the pitch law.
 #include "cycle/repeat_recorded_body.hpp"
 
+namespace wingbeat {
+
+template class CycleGradient<CrankSystem<double, 1>>;
+template class CycleGradient<CrankSystem<double, 2>>;
+
+}  // namespace wingbeat
+
 namespace wingbeat::detail {
 
 template OrbitGradient repeat_recorded(const SteadyFlapping&, const RecordedCycle<CrankSystem<double, 1>>&,

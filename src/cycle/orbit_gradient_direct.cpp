@@ -1,6 +1,13 @@
 // Gradients of direct drives whose wings follow the pitch law.
 #include "cycle/repeat_recorded_body.hpp"
 
+namespace wingbeat {
+
+template class CycleGradient<DirectSystem<double, 2>>;
+template class CycleGradient<DirectSystem<double, 3>>;
+
+}  // namespace wingbeat
+
 namespace wingbeat::detail {
 
 template OrbitGradient repeat_recorded(const SteadyFlapping&, const RecordedCycle<DirectSystem<double, 2>>&,

@@ -1,6 +1,13 @@
 // Gradients of direct drives whose wings pitch on hinges.
 #include "cycle/repeat_recorded_body.hpp"
 
+namespace wingbeat {
+
+template class CycleGradient<PitchDirectSystem<double, 4>>;
+template class CycleGradient<PitchDirectSystem<double, 5>>;
+
+}  // namespace wingbeat
+
 namespace wingbeat::detail {
 
 template OrbitGradient repeat_recorded(const SteadyFlapping&, const RecordedCycle<PitchDirectSystem<double, 4>>&,

@@ -74,42 +74,7 @@ class CycleGradient {
   Jets& system() { return jets_; }
 
   /// One cycle from the orbit's start, its states in the first slots. False where the fixed point is singular.
-  bool run() {
-    JetState y;
-    for (int n = 0; n < N; ++n) y[n] = W(cycle_.steps.front().y[n], n);
-    constexpr auto time = std::size_t(Integral::time);
-    totals_.fill(W(0.0));
-    starts_.reserve(cycle_.steps.size());
-    if constexpr (pitching) ends_.reserve(cycle_.steps.size());
-    for (std::size_t ended = 0; ended < cycle_.steps.size(); ++ended) {
-      const auto& step = cycle_.steps[ended];
-      solver::reset_map<true>(jets_, cycle_.steps, ended, y, &totals_);
-      starts_.push_back(y);
-      const auto signs = solver::signs_of<Jets>(step);
-      const auto result =
-          solver::take_step<true>(cycle_.method, jets_, system_, W(step.x), y, W(step.h), signs, stages_of(ended));
-      for (std::size_t q = 0; q < totals_.size(); ++q) totals_[q] += result.dq[q];
-      y = result.y;
-      if constexpr (pitching) {
-        ends_.push_back(y);
-        begins_.push_back(totals_[time] - result.dq[time]);
-      }
-    }
-    end_ = y;
-    // (I - M) dy/dp = dP/dp, one right-hand side per slot behind the states.
-    for (int k = N; k < slots; ++k) {
-      double matrix[N * N], change[N];
-      for (int row = 0; row < N; ++row) {
-        for (int column = 0; column < N; ++column) {
-          matrix[row * N + column] = (row == column ? 1.0 : 0.0) - y[row].v[column];
-        }
-        change[row] = y[row].v[k];
-      }
-      if (!solver::solve_linear(N, matrix, change)) return false;
-      for (int row = 0; row < N; ++row) start_change_[row][k] = change[row];
-    }
-    return true;
-  }
+  bool run();
 
   /// The state behind the cycle and the integrals over it, after run(): functions of the state at its start, in the
   /// first slots, and of what `vehicle` was built from, in those behind.
@@ -231,12 +196,16 @@ class CycleGradient {
   }
 
   /// True where step n begins with an impact on a stop.
-  bool impact_before(std::size_t n) const {
+  bool impact_before(std::size_t n) const
+    requires pitching
+  {
     return n > 0 && cycle_.steps[n - 1].signs[System::impacts] != cycle_.steps[n].signs[System::impacts];
   }
 
   /// By how much the place where step n begins moves: a sign changes there, of a switch on the branch before.
-  W move_of_node(std::size_t n) const {
+  W move_of_node(std::size_t n) const
+    requires pitching
+  {
     constexpr std::size_t switches = std::tuple_size_v<typename System::Switches>;
     if (n == 0 || n >= cycle_.steps.size()) return W(0.0);
     const auto& before = cycle_.steps[n - 1];
@@ -264,7 +233,9 @@ class CycleGradient {
 
   /// The state at a peak, and in `x` where it is: a peak at the end of a branch, where the value may be kinked or jump,
   /// moves with that.
-  JetState state_on(const PeakLocation& place, W& x) const {
+  JetState state_on(const PeakLocation& place, W& x) const
+    requires pitching
+  {
     const auto& step = cycle_.steps[place.step];
     const bool at_start = place.x == step.x;
     if (!place.at_end && !at_start) return state_at(place.step, place.x);
@@ -277,7 +248,9 @@ class CycleGradient {
   }
 
   /// psi [rad] where step n begins, at a reversal of a stroke whose velocity is a state at the reversal itself.
-  W pitch_at_start(std::size_t n) const {
+  W pitch_at_start(std::size_t n) const
+    requires pitching
+  {
     constexpr std::size_t psi = System::pitch;
     if (n == cycle_.steps.size()) return ends_.back()[psi];
     if constexpr (requires { System::velocity; }) {
@@ -291,7 +264,9 @@ class CycleGradient {
   }
 
   /// Of the first harmonics in time, as in pitch_metrics().
-  W phase_of_pitch(const W& period) const {
+  W phase_of_pitch(const W& period) const
+    requires pitching
+  {
     W stroke_cosine(0.0), stroke_sine(0.0), pitch_cosine(0.0), pitch_sine(0.0), ended(0.0);
     for (std::size_t n = 0; n < cycle_.steps.size(); ++n) {
       const auto& step = cycle_.steps[n];
@@ -337,30 +312,7 @@ class CycleGradient {
 
   /// Moves the step ends at which a sign flips onto the sign change, by Newton from the recorded place. Not those at
   /// fixed nodes (dead centres) and at jumps, which are where they belong.
-  void sharpen() {
-    constexpr std::size_t switches = std::tuple_size_v<typename System::Switches>;
-    for (std::size_t n = 1; n < cycle_.steps.size(); ++n) {
-      auto& before = cycle_.steps[n - 1];
-      auto& after = cycle_.steps[n];
-      std::size_t flipped = switches;
-      bool stays = false;
-      for (std::size_t k = before.signs.size(); k-- > 0;) {
-        if (before.signs[k] == after.signs[k]) continue;
-        flipped = k;
-        stays = stays || k >= switches || solver::jumps(system_, k);
-      }
-      if (flipped == switches || stays) continue;
-      const auto rates = along_.template rates<false>(Jet<1>(after.x, 0), moving(after.y, after.first.dy),
-                                                      solver::signs_of<Along>(after));
-      const Jet<1> which = rates.switches[flipped];
-      const double move = -which.a / which.v[0];
-      if (!(std::abs(move) < 0.25 * std::min(before.h, after.h))) continue;
-      before.h += move;
-      after.x += move;
-      after.h -= move;
-      for (int i = 0; i < N; ++i) after.y[i] += move * after.first.dy[i];
-    }
-  }
+  void sharpen();
 
   /// Where each extreme lies.
   std::array<PeakLocation, extreme_count> locate() const {
@@ -460,5 +412,69 @@ class CycleGradient {
   double start_change_[N][slots] = {};
   bool absent_slots_[gradient_slots];
 };
+
+template <class System>
+bool CycleGradient<System>::run() {
+  JetState y;
+  for (int n = 0; n < N; ++n) y[n] = W(cycle_.steps.front().y[n], n);
+  constexpr auto time = std::size_t(Integral::time);
+  totals_.fill(W(0.0));
+  starts_.reserve(cycle_.steps.size());
+  if constexpr (pitching) ends_.reserve(cycle_.steps.size());
+  for (std::size_t ended = 0; ended < cycle_.steps.size(); ++ended) {
+    const auto& step = cycle_.steps[ended];
+    solver::reset_map<true>(jets_, cycle_.steps, ended, y, &totals_);
+    starts_.push_back(y);
+    const auto signs = solver::signs_of<Jets>(step);
+    const auto result =
+        solver::take_step<true>(cycle_.method, jets_, system_, W(step.x), y, W(step.h), signs, stages_of(ended));
+    for (std::size_t q = 0; q < totals_.size(); ++q) totals_[q] += result.dq[q];
+    y = result.y;
+    if constexpr (pitching) {
+      ends_.push_back(y);
+      begins_.push_back(totals_[time] - result.dq[time]);
+    }
+  }
+  end_ = y;
+  // (I - M) dy/dp = dP/dp, one right-hand side per slot behind the states.
+  for (int k = N; k < slots; ++k) {
+    double matrix[N * N], change[N];
+    for (int row = 0; row < N; ++row) {
+      for (int column = 0; column < N; ++column) {
+        matrix[row * N + column] = (row == column ? 1.0 : 0.0) - y[row].v[column];
+      }
+      change[row] = y[row].v[k];
+    }
+    if (!solver::solve_linear(N, matrix, change)) return false;
+    for (int row = 0; row < N; ++row) start_change_[row][k] = change[row];
+  }
+  return true;
+}
+
+template <class System>
+void CycleGradient<System>::sharpen() {
+  constexpr std::size_t switches = std::tuple_size_v<typename System::Switches>;
+  for (std::size_t n = 1; n < cycle_.steps.size(); ++n) {
+    auto& before = cycle_.steps[n - 1];
+    auto& after = cycle_.steps[n];
+    std::size_t flipped = switches;
+    bool stays = false;
+    for (std::size_t k = before.signs.size(); k-- > 0;) {
+      if (before.signs[k] == after.signs[k]) continue;
+      flipped = k;
+      stays = stays || k >= switches || solver::jumps(system_, k);
+    }
+    if (flipped == switches || stays) continue;
+    const auto rates = along_.template rates<false>(Jet<1>(after.x, 0), moving(after.y, after.first.dy),
+                                                    solver::signs_of<Along>(after));
+    const Jet<1> which = rates.switches[flipped];
+    const double move = -which.a / which.v[0];
+    if (!(std::abs(move) < 0.25 * std::min(before.h, after.h))) continue;
+    before.h += move;
+    after.x += move;
+    after.h -= move;
+    for (int i = 0; i < N; ++i) after.y[i] += move * after.first.dy[i];
+  }
+}
 
 }  // namespace wingbeat
