@@ -7,14 +7,14 @@
 namespace wingbeat {
 
 // Those of orbit_gradient_*.cpp.
-extern template class CycleGradient<CrankSystem<double, 1>>;
-extern template class CycleGradient<CrankSystem<double, 2>>;
-extern template class CycleGradient<DirectSystem<double, 2>>;
-extern template class CycleGradient<DirectSystem<double, 3>>;
-extern template class CycleGradient<PitchCrankSystem<double, 3>>;
-extern template class CycleGradient<PitchCrankSystem<double, 4>>;
-extern template class CycleGradient<PitchDirectSystem<double, 4>>;
-extern template class CycleGradient<PitchDirectSystem<double, 5>>;
+extern template bool CycleGradient<CrankSystem<double, 1>>::run();
+extern template bool CycleGradient<CrankSystem<double, 2>>::run();
+extern template bool CycleGradient<DirectSystem<double, 2>>::run();
+extern template bool CycleGradient<DirectSystem<double, 3>>::run();
+extern template bool CycleGradient<PitchCrankSystem<double, 3>>::run();
+extern template bool CycleGradient<PitchCrankSystem<double, 4>>::run();
+extern template bool CycleGradient<PitchDirectSystem<double, 4>>::run();
+extern template bool CycleGradient<PitchDirectSystem<double, 5>>::run();
 
 namespace {
 

@@ -3,8 +3,8 @@
 
 namespace wingbeat {
 
-template class CycleGradient<CrankSystem<double, 1>>;
-template class CycleGradient<CrankSystem<double, 2>>;
+template bool CycleGradient<CrankSystem<double, 1>>::run();
+template bool CycleGradient<CrankSystem<double, 2>>::run();
 
 }  // namespace wingbeat
 

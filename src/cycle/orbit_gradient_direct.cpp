@@ -3,8 +3,8 @@
 
 namespace wingbeat {
 
-template class CycleGradient<DirectSystem<double, 2>>;
-template class CycleGradient<DirectSystem<double, 3>>;
+template bool CycleGradient<DirectSystem<double, 2>>::run();
+template bool CycleGradient<DirectSystem<double, 3>>::run();
 
 }  // namespace wingbeat
 

@@ -3,8 +3,8 @@
 
 namespace wingbeat {
 
-template class CycleGradient<PitchCrankSystem<double, 3>>;
-template class CycleGradient<PitchCrankSystem<double, 4>>;
+template bool CycleGradient<PitchCrankSystem<double, 3>>::run();
+template bool CycleGradient<PitchCrankSystem<double, 4>>::run();
 
 }  // namespace wingbeat
 

@@ -3,8 +3,8 @@
 
 namespace wingbeat {
 
-template class CycleGradient<PitchDirectSystem<double, 4>>;
-template class CycleGradient<PitchDirectSystem<double, 5>>;
+template bool CycleGradient<PitchDirectSystem<double, 4>>::run();
+template bool CycleGradient<PitchDirectSystem<double, 5>>::run();
 
 }  // namespace wingbeat
 
