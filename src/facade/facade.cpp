@@ -4,6 +4,8 @@
 #include <system_error>
 #include <utility>
 
+#include "facade/design_values.hpp"
+#include "files/design_settings.hpp"
 #include "files/read_number.hpp"
 #include "files/study_sections.hpp"
 #include "wingbeat/ensemble/ensemble_member.hpp"
@@ -24,57 +26,82 @@ InputError without_place(const InputError& error) {
   return InputError("", 0, 0, error.key(), reason);
 }
 
-/// A number [SI] of an assignment: a decimal, or a quantity in quotes; empty where it is anything else.
-std::optional<double> number_in(std::string_view text, std::string_view unit) {
+/// The value of an assignment where it is a decimal, or a text in quotes without escapes; empty where it is anything
+/// else.
+std::optional<TomlNode> plain_value(std::string_view text) {
+  TomlNode node;
   if (text.size() > 2 && text.front() == '"' && text.find_first_of("\"\\", 1) == text.size() - 1) {
-    try {
-      return parse_quantity(text.substr(1, text.size() - 2), unit, SpeedConstant::inverted);
-    } catch (const UnitError&) {
-      return std::nullopt;
-    }
+    node.kind = TomlNode::Kind::text;
+    node.text = text.substr(1, text.size() - 2);
+    return node;
   }
-  double number = 0.0;
-  const auto [end, error] = detail::read_number(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
-  return number;
+  node.kind = TomlNode::Kind::number;
+  const auto [end, error] = detail::read_number(text.data(), text.data() + text.size(), node.number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(node) : std::nullopt;
 }
 
-/// The design with other values of numbers that it has, without a vehicle file in between; empty where that is not all
-/// there is to do.
-std::optional<Design<double>> with_numbers(std::span<const std::string> assignments, const Design<double>& base) {
-  std::optional<Design<double>> design = base;
-  for (const std::string_view assignment : assignments) {
-    const std::size_t equals = assignment.find('=');
-    if (equals == assignment.npos) return std::nullopt;
-    const Parameter<double>* key = find_parameter<double>(assignment.substr(0, equals));
-    if (!key || !key->get || !key->set || !key->get(*design)) return std::nullopt;
-    const std::optional<double> number = number_in(assignment.substr(equals + 1), key->unit);
-    if (!number || !key->range.holds(*number) || !key->set(*design, *number) || key->get(*design) != number) {
-      return std::nullopt;
-    }
-  }
+std::optional<double> number_in(const TomlNode& value, std::string_view unit) {
+  if (value.kind == TomlNode::Kind::number && std::isfinite(value.number)) return value.number;
+  if (value.kind != TomlNode::Kind::text) return std::nullopt;
   try {
-    validate(*design);
-  } catch (const ParameterError&) {
+    return parse_quantity(value.text, unit, SpeedConstant::inverted);
+  } catch (const UnitError&) {
     return std::nullopt;
   }
-  return design;
 }
 
-}  // namespace
+/// Another value of a number that the design has; false where that is not all there is to do.
+bool set_number(Design<double>& design, std::string_view path, const TomlNode& value) {
+  const Parameter<double>* key = find_parameter<double>(path);
+  if (!key || !key->get || !key->set || !key->get(design)) return false;
+  const std::optional<double> number = number_in(value, key->unit);
+  return number && key->range.holds(*number) && key->set(design, *number) && key->get(design) == number;
+}
 
-Design<double> design_with(std::span<const std::string> assignments, const Design<double>* base) {
-  if (base) {
-    if (std::optional<Design<double>> design = with_numbers(assignments, *base)) return *std::move(design);
-  }
+bool is_valid(const Design<double>& design) {
   try {
-    return parse_design(base ? write_design(*base) : std::string(), "vehicle", assignments,
-                        [](const std::string& name) { return read_text_file(name); });
+    validate(design);
+    return true;
+  } catch (const ParameterError&) {
+    return false;
+  }
+}
+
+Design<double> read_values(std::span<const Setting> settings, std::span<const std::string> overrides,
+                           const Design<double>* base) {
+  try {
+    return design_of(base ? document_of(*base, "vehicle") : parse_document("", "vehicle"), settings, overrides,
+                     [](const std::string& name) { return read_text_file(name); });
   } catch (const InputError& error) {
     InputError placeless = without_place(error);
     for (const InputError& other : error.others()) placeless.add_other(without_place(other));
     throw placeless;
   }
+}
+
+}  // namespace
+
+Design<double> design_with(std::span<const std::string> assignments, const Design<double>* base) {
+  std::optional<Design<double>> design;
+  if (base) design = *base;
+  for (const std::string_view assignment : assignments) {
+    if (!design) break;
+    const std::size_t equals = std::min(assignment.find('='), assignment.size());
+    const auto value = equals < assignment.size() ? plain_value(assignment.substr(equals + 1)) : std::nullopt;
+    if (!value || !set_number(*design, assignment.substr(0, equals), *value)) design.reset();
+  }
+  if (design && is_valid(*design)) return *std::move(design);
+  return read_values({}, assignments, base);
+}
+
+Design<double> design_with(std::span<const Setting> settings, const Design<double>* base) {
+  if (base) {
+    Design<double> design = *base;
+    const bool all_set = std::all_of(settings.begin(), settings.end(),
+                                     [&](const Setting& s) { return set_number(design, s.path, s.value); });
+    if (all_set && is_valid(design)) return design;
+  }
+  return read_values(settings, {}, base);
 }
 
 std::string_view name_without_unit(std::string_view key, std::string_view unit) {
