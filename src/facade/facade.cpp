@@ -26,18 +26,19 @@ InputError without_place(const InputError& error) {
   return InputError("", 0, 0, error.key(), reason);
 }
 
-/// The value of an assignment where it is a decimal, or a text in quotes without escapes; empty where it is anything
-/// else.
-std::optional<TomlNode> plain_value(std::string_view text) {
-  TomlNode node;
+/// KEY=VALUE where the value is a decimal, or a text in quotes without escapes; empty where it is anything else.
+std::optional<Setting> plain_setting(std::string_view assignment) {
+  const std::size_t equals = std::min(assignment.find('='), assignment.size());
+  const std::string_view text = assignment.substr(std::min(equals + 1, assignment.size()));
+  Setting setting{std::string(assignment.substr(0, equals)), {}, {}};
   if (text.size() > 2 && text.front() == '"' && text.find_first_of("\"\\", 1) == text.size() - 1) {
-    node.kind = TomlNode::Kind::text;
-    node.text = text.substr(1, text.size() - 2);
-    return node;
+    setting.value.kind = TomlNode::Kind::text;
+    setting.value.text = text.substr(1, text.size() - 2);
+    return setting;
   }
-  node.kind = TomlNode::Kind::number;
-  const auto [end, error] = detail::read_number(text.data(), text.data() + text.size(), node.number);
-  return error == std::errc() && end == text.data() + text.size() ? std::optional(node) : std::nullopt;
+  setting.value.kind = TomlNode::Kind::number;
+  const auto [end, error] = detail::read_number(text.data(), text.data() + text.size(), setting.value.number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(setting) : std::nullopt;
 }
 
 std::optional<double> number_in(const TomlNode& value, std::string_view unit) {
@@ -50,21 +51,23 @@ std::optional<double> number_in(const TomlNode& value, std::string_view unit) {
   }
 }
 
-/// Another value of a number that the design has; false where that is not all there is to do.
-bool set_number(Design<double>& design, std::string_view path, const TomlNode& value) {
-  const Parameter<double>* key = find_parameter<double>(path);
-  if (!key || !key->get || !key->set || !key->get(design)) return false;
-  const std::optional<double> number = number_in(value, key->unit);
-  return number && key->range.holds(*number) && key->set(design, *number) && key->get(design) == number;
-}
-
-bool is_valid(const Design<double>& design) {
-  try {
-    validate(design);
-    return true;
-  } catch (const ParameterError&) {
-    return false;
+/// The design with other values of numbers that it has; empty where that is not all there is to do.
+std::optional<Design<double>> with_numbers(std::span<const Setting> settings, const Design<double>& base) {
+  std::optional<Design<double>> design = base;
+  for (const Setting& setting : settings) {
+    const Parameter<double>* key = find_parameter<double>(setting.path);
+    if (!key || !key->get || !key->set || !key->get(*design)) return std::nullopt;
+    const std::optional<double> number = number_in(setting.value, key->unit);
+    if (!number || !key->range.holds(*number) || !key->set(*design, *number) || key->get(*design) != number) {
+      return std::nullopt;
+    }
   }
+  try {
+    validate(*design);
+  } catch (const ParameterError&) {
+    return std::nullopt;
+  }
+  return design;
 }
 
 Design<double> read_values(std::span<const Setting> settings, std::span<const std::string> overrides,
@@ -82,24 +85,19 @@ Design<double> read_values(std::span<const Setting> settings, std::span<const st
 }  // namespace
 
 Design<double> design_with(std::span<const std::string> assignments, const Design<double>* base) {
-  std::optional<Design<double>> design;
-  if (base) design = *base;
-  for (const std::string_view assignment : assignments) {
-    if (!design) break;
-    const std::size_t equals = std::min(assignment.find('='), assignment.size());
-    const auto value = equals < assignment.size() ? plain_value(assignment.substr(equals + 1)) : std::nullopt;
-    if (!value || !set_number(*design, assignment.substr(0, equals), *value)) design.reset();
+  std::vector<Setting> settings;
+  for (const std::string& assignment : assignments) {
+    if (std::optional<Setting> setting = plain_setting(assignment)) settings.push_back(*std::move(setting));
   }
-  if (design && is_valid(*design)) return *std::move(design);
+  if (base && settings.size() == assignments.size()) {
+    if (std::optional<Design<double>> design = with_numbers(settings, *base)) return *std::move(design);
+  }
   return read_values({}, assignments, base);
 }
 
 Design<double> design_with(std::span<const Setting> settings, const Design<double>* base) {
   if (base) {
-    Design<double> design = *base;
-    const bool all_set = std::all_of(settings.begin(), settings.end(),
-                                     [&](const Setting& s) { return set_number(design, s.path, s.value); });
-    if (all_set && is_valid(design)) return design;
+    if (std::optional<Design<double>> design = with_numbers(settings, *base)) return *std::move(design);
   }
   return read_values(settings, {}, base);
 }
