@@ -44,7 +44,7 @@ double columns(const Design<double>& design, std::size_t count) {
   input.study =
       "[study]\nvehicle = \"vehicle\"\n[[axis]]\nname = \"design\"\n"
       "keys = [\"supply.voltage\", \"transmission.crank_radius\"]\nvalues = [[3.0], [0.005]]\n";
-  input.vehicle = write_design(design);
+  input.design = design;
   std::vector<double> voltages(count), radii(count);
   for (std::size_t n = 0; n < count; ++n) {
     double whole = 0.0;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "binding.hpp"
+#include "facade/design_values.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/input_file.hpp"
@@ -60,9 +61,38 @@ Design<double> read(const std::string& file) {
 
 Design<double> parse(const std::string& text, const std::string& name) { return parse_design(text, name); }
 
-Design<double> with(const std::vector<std::string>& assignments, const Design<double>* base) {
+/// A number, True, False, a text, a list or a dict, as _vehicle.py gives them.
+TomlNode node_of(const py::handle& value) {
+  TomlNode node;
+  if (py::isinstance<py::bool_>(value)) {
+    node.kind = TomlNode::Kind::boolean;
+    node.number = value.cast<bool>() ? 1.0 : 0.0;
+  } else if (py::isinstance<py::float_>(value) || py::isinstance<py::int_>(value)) {
+    node.kind = TomlNode::Kind::number;
+    node.number = value.cast<double>();
+    node.whole = py::isinstance<py::int_>(value);
+  } else if (py::isinstance<py::str>(value)) {
+    node.kind = TomlNode::Kind::text;
+    node.text = value.cast<std::string>();
+  } else if (py::isinstance<py::dict>(value)) {
+    node.kind = TomlNode::Kind::table;
+    for (const auto& [key, member] : value.cast<py::dict>()) {
+      node.members.push_back({key.cast<std::string>(), node_of(member)});
+    }
+  } else {
+    node.kind = TomlNode::Kind::array;
+    for (const py::handle item : value.cast<py::list>()) node.items.push_back(node_of(item));
+  }
+  return node;
+}
+
+Design<double> with(const py::dict& values, const Design<double>* base) {
   forget_files();
-  return design_with(assignments, base);
+  std::vector<Setting> settings;
+  for (const auto& [key, value] : values) {
+    settings.push_back({key.cast<std::string>(), node_of(value), {"values", 0, 0, true}});
+  }
+  return design_with(settings, base);
 }
 
 const Parameter<double>& parameter(std::string_view path) {
@@ -291,7 +321,8 @@ PYBIND11_MODULE(_core, m) {
   py::class_<Design<double>>(m, "Design").def("value", &value_of).def("to_toml", &write_design);
   m.def("read", &read);
   m.def("parse", &parse);
-  m.def("with_values", &with, "assignments"_a, "base"_a.none(true));
+  m.def("with_values", &with, "values"_a, "base"_a.none(true));
+  m.def("toml", [](const py::object& value) { return toml_value(node_of(value)); });
   m.def("parameters", &parameters);
   m.def("metrics", [] { return described(metric_table()); });
   m.def("waveforms", [] { return described(waveform_columns()); });

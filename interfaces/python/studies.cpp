@@ -22,20 +22,12 @@ namespace {
 
 // ---- very many
 
-StudyInput study_input(const std::string& name, const std::string& study, const Design<double>& vehicle) {
-  StudyInput input;
-  input.study_name = name;
-  input.study = study;
-  input.vehicle = write_design(vehicle);
-  return input;
-}
-
 /// Solves a design for each row of the columns, which are in the order of the keys of the study's one axis. That study,
 /// of a single design, is where the program's checks are made.
 py::dict solve_columns(const std::string& study, const Design<double>& base,
                        const std::vector<py::array_t<double>>& columns, std::size_t count, const std::string& condition,
                        int threads, const py::object& progress) {
-  Sweep sweep = parse_study(study_input("columns", study, base)).sweep;
+  Sweep sweep = parse_study({.study_name = "columns", .study = study, .design = base}).sweep;
   sweep.variants.at(0).condition = choice<Condition>("condition", condition);
   SweepAxis& axis = sweep.axes.at(0);
   if (sweep.axes.size() != 1 || axis.quantities.size() != columns.size()) throw py::value_error("one axis of columns");
@@ -72,7 +64,8 @@ void write_sweep(const std::string& study, const Design<double>& vehicle, const 
   silence_hdf5();  // here xarray will open the file
   watched(progress, [&](Watch& watch) {
     silence_hdf5();
-    const Study parsed = parse_study(study_input("sweep", study, vehicle));
+    const Study parsed =
+        parse_study({.study_name = "sweep", .study = study, .vehicle = write_design(vehicle), .design = vehicle});
     SweepRunOptions options;
     options.output = output;
     options.version = WINGBEAT_VERSION;

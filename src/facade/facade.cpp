@@ -4,6 +4,8 @@
 #include <system_error>
 #include <utility>
 
+#include "facade/design_values.hpp"
+#include "files/design_settings.hpp"
 #include "files/read_number.hpp"
 #include "files/study_sections.hpp"
 #include "wingbeat/ensemble/ensemble_member.hpp"
@@ -24,31 +26,38 @@ InputError without_place(const InputError& error) {
   return InputError("", 0, 0, error.key(), reason);
 }
 
-/// A number [SI] of an assignment: a decimal, or a quantity in quotes; empty where it is anything else.
-std::optional<double> number_in(std::string_view text, std::string_view unit) {
+/// KEY=VALUE where the value is a decimal, or a text in quotes without escapes; empty where it is anything else.
+std::optional<Setting> plain_setting(std::string_view assignment) {
+  const std::size_t equals = std::min(assignment.find('='), assignment.size());
+  const std::string_view text = assignment.substr(std::min(equals + 1, assignment.size()));
+  Setting setting{std::string(assignment.substr(0, equals)), {}, {}};
   if (text.size() > 2 && text.front() == '"' && text.find_first_of("\"\\", 1) == text.size() - 1) {
-    try {
-      return parse_quantity(text.substr(1, text.size() - 2), unit, SpeedConstant::inverted);
-    } catch (const UnitError&) {
-      return std::nullopt;
-    }
+    setting.value.kind = TomlNode::Kind::text;
+    setting.value.text = text.substr(1, text.size() - 2);
+    return setting;
   }
-  double number = 0.0;
-  const auto [end, error] = detail::read_number(text.data(), text.data() + text.size(), number);
-  if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(number)) return std::nullopt;
-  return number;
+  setting.value.kind = TomlNode::Kind::number;
+  const auto [end, error] = detail::read_number(text.data(), text.data() + text.size(), setting.value.number);
+  return error == std::errc() && end == text.data() + text.size() ? std::optional(setting) : std::nullopt;
 }
 
-/// The design with other values of numbers that it has, without a vehicle file in between; empty where that is not all
-/// there is to do.
-std::optional<Design<double>> with_numbers(std::span<const std::string> assignments, const Design<double>& base) {
+std::optional<double> number_in(const TomlNode& value, std::string_view unit) {
+  if (value.kind == TomlNode::Kind::number && std::isfinite(value.number)) return value.number;
+  if (value.kind != TomlNode::Kind::text) return std::nullopt;
+  try {
+    return parse_quantity(value.text, unit, SpeedConstant::inverted);
+  } catch (const UnitError&) {
+    return std::nullopt;
+  }
+}
+
+/// The design with other values of numbers that it has; empty where that is not all there is to do.
+std::optional<Design<double>> with_numbers(std::span<const Setting> settings, const Design<double>& base) {
   std::optional<Design<double>> design = base;
-  for (const std::string_view assignment : assignments) {
-    const std::size_t equals = assignment.find('=');
-    if (equals == assignment.npos) return std::nullopt;
-    const Parameter<double>* key = find_parameter<double>(assignment.substr(0, equals));
+  for (const Setting& setting : settings) {
+    const Parameter<double>* key = find_parameter<double>(setting.path);
     if (!key || !key->get || !key->set || !key->get(*design)) return std::nullopt;
-    const std::optional<double> number = number_in(assignment.substr(equals + 1), key->unit);
+    const std::optional<double> number = number_in(setting.value, key->unit);
     if (!number || !key->range.holds(*number) || !key->set(*design, *number) || key->get(*design) != number) {
       return std::nullopt;
     }
@@ -61,20 +70,36 @@ std::optional<Design<double>> with_numbers(std::span<const std::string> assignme
   return design;
 }
 
-}  // namespace
-
-Design<double> design_with(std::span<const std::string> assignments, const Design<double>* base) {
-  if (base) {
-    if (std::optional<Design<double>> design = with_numbers(assignments, *base)) return *std::move(design);
-  }
+Design<double> read_values(std::span<const Setting> settings, std::span<const std::string> overrides,
+                           const Design<double>* base) {
   try {
-    return parse_design(base ? write_design(*base) : std::string(), "vehicle", assignments,
-                        [](const std::string& name) { return read_text_file(name); });
+    return design_of(base ? document_of(*base, "vehicle") : parse_document("", "vehicle"), settings, overrides,
+                     [](const std::string& name) { return read_text_file(name); });
   } catch (const InputError& error) {
     InputError placeless = without_place(error);
     for (const InputError& other : error.others()) placeless.add_other(without_place(other));
     throw placeless;
   }
+}
+
+}  // namespace
+
+Design<double> design_with(std::span<const std::string> assignments, const Design<double>* base) {
+  std::vector<Setting> settings;
+  for (const std::string& assignment : assignments) {
+    if (std::optional<Setting> setting = plain_setting(assignment)) settings.push_back(*std::move(setting));
+  }
+  if (base && settings.size() == assignments.size()) {
+    if (std::optional<Design<double>> design = with_numbers(settings, *base)) return *std::move(design);
+  }
+  return read_values({}, assignments, base);
+}
+
+Design<double> design_with(std::span<const Setting> settings, const Design<double>* base) {
+  if (base) {
+    if (std::optional<Design<double>> design = with_numbers(settings, *base)) return *std::move(design);
+  }
+  return read_values(settings, {}, base);
 }
 
 std::string_view name_without_unit(std::string_view key, std::string_view unit) {

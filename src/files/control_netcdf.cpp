@@ -64,7 +64,8 @@ void write_control_netcdf(const ControlModels& models, const std::string& versio
                           .version = version,
                           .vehicle = write_design(operating_point.design),
                           .condition = name_of(models.options.operating_point.condition),
-                          .domain = name_of(operating_point.domain)});
+                          .domain = name_of(operating_point.domain),
+                          .tolerance = models.options.operating_point.tolerance});
   put_numbers(data, "period", {}, "s", "time step of the cycle-to-cycle model", {map.period});
   const Dimension state = put_signals(data, "state", map.states), next = put_copy(data, "next_state", map.states);
   const Dimension input = put_signals(data, "input", map.inputs), output = put_signals(data, "output", map.outputs);

@@ -30,7 +30,9 @@ Keys keys_of(const Design<double>& design) {
 }
 
 bool same(const WrittenKey& a, const WrittenKey& b) {
-  if (a.number && b.number) return std::abs(*a.number - *b.number) <= rounding * std::abs(*b.number);
+  if (a.is_number() && b.is_number()) {
+    return std::abs(a.value.number - b.value.number) <= rounding * std::abs(b.value.number);
+  }
   return a.text == b.text;
 }
 
@@ -144,11 +146,11 @@ class Editor {
   std::string value_for(const TomlNode& node, const WrittenKey& key) const {
     const std::string_view old = of(node.begin, node.end);
     const bool quoted = old.size() >= 2 && (old.front() == '"' || old.front() == '\'');
-    if (!key.number) return key.text;
-    if (!quoted) return toml_quantity(*key.number, "1");
+    if (!key.is_number()) return key.text;
+    if (!quoted) return toml_quantity(key.value.number, "1");
     const std::string_view inside = old.substr(1, old.size() - 2);
     const bool plain = inside.find_first_of("\\\"'\n") == std::string_view::npos;
-    const auto text = plain ? in_unit_of(inside, *key.number, key.unit) : std::nullopt;
+    const auto text = plain ? in_unit_of(inside, key.value.number, key.unit) : std::nullopt;
     return text ? fmt::format("{}{}{}", old.front(), *text, old.front()) : key.text;
   }
 

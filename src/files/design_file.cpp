@@ -13,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "files/design_settings.hpp"
 #include "files/input_errors.hpp"
 #include "files/read_stream.hpp"
 #include "files/table_csv.hpp"
@@ -451,17 +452,26 @@ std::string read_text_file(const std::filesystem::path& file, std::size_t larges
   return text;
 }
 
-Design<double> parse_design(std::string_view text, std::string_view file_name, std::span<const std::string> overrides,
-                            const TableLoader& load_table) {
-  Document document = parse_document(text, file_name);
-  document.errors.attempt([&] { apply_overrides(document, overrides); });
+Design<double> design_of(Document document, std::span<const Setting> settings, std::span<const std::string> overrides,
+                         const TableLoader& load_table) {
+  document.errors.attempt([&] { apply_overrides(document, settings, overrides); });
   return Reader(document, load_table).read();
 }
 
-Design<double> read_design(const std::filesystem::path& file, std::span<const std::string> overrides) {
+Design<double> parse_design(std::string_view text, std::string_view file_name, std::span<const std::string> overrides,
+                            const TableLoader& load_table) {
+  return design_of(parse_document(text, file_name), {}, overrides, load_table);
+}
+
+Design<double> read_design(const std::filesystem::path& file, std::span<const Setting> settings,
+                           std::span<const std::string> overrides) {
   const std::filesystem::path folder = file.parent_path();
-  return parse_design(read_text_file(file), input_name(file), overrides,
-                      [&](const std::string& name) { return read_text_file(folder / name); });
+  return design_of(parse_document(read_text_file(file), input_name(file)), settings, overrides,
+                   [&](const std::string& name) { return read_text_file(folder / name); });
+}
+
+Design<double> read_design(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  return read_design(file, {}, overrides);
 }
 
 }  // namespace wingbeat

@@ -1,8 +1,11 @@
 // The design as a vehicle file.
 #include <fmt/format.h>
 
+#include <array>
 #include <cmath>
+#include <utility>
 
+#include "files/design_settings.hpp"
 #include "files/design_write.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
@@ -14,37 +17,36 @@ namespace {
 /// The shortest text that reads back to the same double. A TOML integer has no negative zero.
 std::string toml_number(double x) { return x == 0.0 && std::signbit(x) ? "-0.0" : fmt::format("{}", x); }
 
-std::string chord_rows(const Planform<double>& planform) {
-  std::string rows = "[";
-  for (const auto& [distance, chord] : planform.chord_table) {
-    rows += fmt::format("\n  [{}, {}],", toml_quantity(distance, "m"), toml_quantity(chord, "m"));
-  }
-  return rows + "\n]";
+TomlNode number_node(double x) {
+  TomlNode node;
+  node.kind = TomlNode::Kind::number;
+  node.number = x;
+  return node;
 }
 
-std::string discharge_rows(const Battery<double>& battery) {
-  std::string rows = "[";
-  for (const auto& [charge, voltage] : battery.discharge_curve) {
-    rows += fmt::format("\n  [{}, {}],", toml_number(charge), toml_quantity(voltage, "V"));
+/// Rows of a table, each column in its unit.
+template <std::size_t N>
+void write_rows(WrittenKey& key, const std::array<std::string_view, N>& units,
+                const std::vector<std::array<double, N>>& rows) {
+  key.value.kind = TomlNode::Kind::array;
+  key.text = "[";
+  for (const std::array<double, N>& row : rows) {
+    TomlNode& node = key.value.items.emplace_back();
+    node.kind = TomlNode::Kind::array;
+    key.text += "\n  [";
+    for (std::size_t n = 0; n < N; ++n) {
+      node.items.push_back(number_node(row[n]));
+      key.text += fmt::format("{}{}", n ? ", " : "", toml_quantity(row[n], units[n]));
+    }
+    key.text += "],";
   }
-  return rows + "\n]";
+  key.text += "\n]";
 }
 
-std::string stroke_rows(const StrokeCurve& curve) {
-  std::string rows = "[";
-  for (const auto& [theta, beta] : curve.rows()) {
-    rows += fmt::format("\n  [{}, {}],", toml_quantity(theta, "rad"), toml_quantity(beta, "rad"));
-  }
-  return rows + "\n]";
-}
-
-std::string coefficient_rows(const CoefficientTable& table) {
-  std::string rows = "[";
-  for (std::size_t n = 0; n < table.alpha().size(); ++n) {
-    rows += fmt::format("\n  [{}, {}, {}],", toml_quantity(table.alpha()[n], "rad"), toml_number(table.lift()[n]),
-                        toml_number(table.drag()[n]));
-  }
-  return rows + "\n]";
+std::vector<std::array<double, 2>> rows_of(const std::vector<std::pair<double, double>>& pairs) {
+  std::vector<std::array<double, 2>> rows;
+  for (const auto& [x, y] : pairs) rows.push_back({x, y});
+  return rows;
 }
 
 }  // namespace
@@ -56,28 +58,57 @@ std::string toml_quantity(double x, std::string_view unit) {
 std::vector<WrittenKey> written_keys(const Design<double>& design) {
   const bool custom = design.aerodynamics.coefficients_name == "custom";
   std::vector<WrittenKey> keys;
-  const auto write = [&](const ParameterText& key, std::string text, std::optional<double> number = {}) {
-    keys.push_back({key.path, key.unit, std::move(text), number});
-  };
   for (const auto& key : parameter_table<double>()) {
+    WrittenKey written{key.path, key.unit, {}, {}};
     const bool of_wave = key.get && key.path.starts_with("aerodynamics.coefficients.");
     if (key.path == "wing.planform.chords") {
-      if (design.wing.planform.shape == PlanformShape::tabulated) write(key, chord_rows(design.wing.planform));
+      if (design.wing.planform.shape != PlanformShape::tabulated) continue;
+      write_rows<2>(written, {"m", "m"}, rows_of(design.wing.planform.chord_table));
     } else if (key.path == "supply.discharge_curve") {
-      const bool battery = has_battery(design.supply.type);
-      if (battery && !design.supply.battery.discharge_curve.empty()) write(key, discharge_rows(design.supply.battery));
+      const Battery<double>& battery = design.supply.battery;
+      if (!has_battery(design.supply.type) || battery.discharge_curve.empty()) continue;
+      write_rows<2>(written, {"1", "V"}, rows_of(battery.discharge_curve));
     } else if (key.path == "transmission.stroke_table") {
-      if (const auto& curve = design.transmission.table.curve) write(key, stroke_rows(*curve));
+      const auto& curve = design.transmission.table.curve;
+      if (!curve) continue;
+      write_rows<2>(written, {"rad", "rad"}, rows_of(curve->rows()));
     } else if (key.path == "aerodynamics.coefficients.table") {
-      if (const auto& table = design.aerodynamics.coefficients.table) write(key, coefficient_rows(*table));
+      const auto& table = design.aerodynamics.coefficients.table;
+      if (!table) continue;
+      std::vector<std::array<double, 3>> rows;
+      for (std::size_t n = 0; n < table->alpha().size(); ++n) {
+        rows.push_back({table->alpha()[n], table->lift()[n], table->drag()[n]});
+      }
+      write_rows<3>(written, {"rad", "1", "1"}, rows);
     } else if (key.text) {
+      written.value.text = key.text(design);
+      if (written.value.text.empty()) continue;
       const bool flag = key.range.text == "true or false";
-      if (const std::string text = key.text(design); !text.empty()) write(key, flag ? text : toml_text(text));
-    } else if (const auto value = key.get(design); value && (custom || !of_wave)) {
-      write(key, toml_quantity(*value, key.unit), *value);
+      written.value.kind = flag ? TomlNode::Kind::boolean : TomlNode::Kind::text;
+      written.value.number = written.value.text == "true" ? 1.0 : 0.0;
+      written.text = flag ? written.value.text : toml_text(written.value.text);
+    } else {
+      const auto value = key.get(design);
+      if (!value || (of_wave && !custom)) continue;
+      written.value = number_node(*value);
+      written.text = toml_quantity(*value, key.unit);
     }
+    keys.push_back(std::move(written));
   }
   return keys;
+}
+
+Document document_of(const Design<double>& design, std::string_view name) {
+  Document document;
+  document.file_name = name;
+  const Origin origin{document.file_name, 0, 0, false};
+  for (WrittenKey& key : written_keys(design)) {
+    for (auto dot = key.path.find('.'); dot != std::string_view::npos; dot = key.path.find('.', dot + 1)) {
+      document.sections.try_emplace(std::string(key.path.substr(0, dot)), origin);
+    }
+    document.values.emplace(key.path, Value{std::move(key.value), origin});
+  }
+  return document;
 }
 
 std::string write_design(const Design<double>& design) {

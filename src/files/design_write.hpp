@@ -1,11 +1,11 @@
 // A design as the keys of a vehicle file, one by one.
 #pragma once
 
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "files/toml_document.hpp"
 #include "wingbeat/files/toml_text.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
@@ -13,8 +13,10 @@ namespace wingbeat {
 
 struct WrittenKey {
   std::string_view path, unit;
-  std::string text;              ///< the value in TOML, to the last bit
-  std::optional<double> number;  ///< [SI], of a number
+  TomlNode value;    ///< numbers in SI units
+  std::string text;  ///< the value in TOML, to the last bit
+
+  bool is_number() const { return value.kind == TomlNode::Kind::number; }
 };
 
 /// In the order of the key table.

@@ -7,7 +7,7 @@
 
 #include "wingbeat/cycle/metric_gradients.hpp"
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/netcdf.hpp"
+#include "wingbeat/files/netcdf_results.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
@@ -40,8 +40,7 @@ void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResu
     }
   };
   for (int m = 0; m < metric_count; ++m) {
-    const MetricInfo& metric = metric_info(Metric(m));
-    data.write(data.define_variable(metric.key, {}, metric.unit, metric.long_name + std::string(" of the optimum")),
+    data.write(define_metric(data, Metric(m), {}, "", " of the optimum"),
                std::span(&r.point.metrics.values[std::size_t(m)], 1));
   }
   each_parameter("", ", of the optimum", {}, 1, [&](std::size_t, std::size_t k) { return r.parameters[k]; });
@@ -73,10 +72,11 @@ void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResu
   }
   if (!study.constraints.empty()) {
     const auto constraint = data.define_dimension("constraint", study.constraints.size());
-    std::vector<std::string> names;
+    std::vector<std::string> names, units;
     std::vector<double> values, limits, costs;
     for (const MetricConstraint& c : study.constraints) {
       names.push_back(name_of(c));
+      units.push_back(metric_info(c.metric).unit);
       values.push_back(r.point.metrics[c.metric]);
       limits.push_back(c.limit);
       const auto active =
@@ -84,6 +84,7 @@ void write_best(NetcdfFile& data, const OptimiseStudy& study, const OptimiseResu
       costs.push_back(active == r.active.end() ? 0.0 : active->sensitivity);
     }
     data.define_texts("constraint", constraint, names, "constraint");
+    data.define_texts("constraint_unit", constraint, units, "unit of the metric");
     data.write(
         data.define_variable("constraint_value", {constraint}, "1", "value at the optimum, in the unit of the metric"),
         values);
@@ -141,7 +142,8 @@ void write_optimum(const OptimiseFile& file, std::span<const MotorTrial> trials,
                           .version = version,
                           .vehicle = write_design(best ? best->result.design : study.design),
                           .study = input,
-                          .condition = name_of(study.options.condition)});
+                          .condition = name_of(study.options.condition),
+                          .tolerance = study.options.tolerance});
   data.set_attribute("objective", (study.maximise ? "maximise " : "minimise ") + std::string(objective.key));
 
   const auto trial = data.define_dimension("trial", trials.size());

@@ -348,7 +348,8 @@ Study read_study(const fs::path& file, std::span<const std::string> overrides) {
     if (!fs::exists(vehicle)) {
       reader.refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
     }
-    input.vehicle = reader.vehicle_text(vehicle);
+    input.design = reader.vehicle_in(vehicle);
+    input.vehicle = write_design(*input.design);
   });
   const bool all_read = reader.attempt([&] {
     const auto table = reader.table_file();

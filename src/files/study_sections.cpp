@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "files/design_settings.hpp"
 #include "wingbeat/files/input_file.hpp"
-#include "wingbeat/files/toml_text.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
@@ -26,25 +26,6 @@ std::vector<std::string_view> with(std::initializer_list<std::string_view> commo
 }
 
 }  // namespace
-
-std::string toml_value(const TomlNode& node) {
-  std::string text;
-  switch (node.kind) {
-    case Kind::text: return toml_text(node.text);
-    case Kind::number: return node.whole ? fmt::format("{:.0f}", node.number) : fmt::format("{:#}", node.number);
-    case Kind::boolean: return node.number != 0.0 ? "true" : "false";
-    case Kind::array:
-      for (const TomlNode& item : node.items) text += (text.empty() ? "" : ", ") + toml_value(item);
-      return "[" + text + "]";
-    case Kind::table:
-      for (const auto& [key, value] : node.members) {
-        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", toml_key(key), toml_value(value));
-      }
-      return "{" + text + "}";
-    case Kind::other: break;
-  }
-  return "1970-01-01";
-}
 
 StudySections::StudySections(std::string name, std::string_view text, std::span<const std::string> overrides,
                              std::initializer_list<std::string_view> sections,
@@ -74,28 +55,26 @@ void StudySections::refuse_file(const char* section, const char* key, const std:
   refuse(*node, fmt::format("{}.{}", section, key), message);
 }
 
-std::string StudySections::vehicle_text(const std::filesystem::path& vehicle) const {
+Design<double> StudySections::vehicle_in(const std::filesystem::path& vehicle) const {
   const Design<double> alone = read_design(vehicle, overrides_);  // its own errors come first, at its own lines
-  std::vector<std::string> overrides;
-  std::vector<std::pair<SourceLocation, std::string>> origins;
-  const auto set = [&](const std::string& key, const TomlNode& value, const std::string& shown) {
-    overrides.push_back(fmt::format("{}={}", key, toml_value(value)));
-    origins.emplace_back(place_of(value), shown);
+  std::vector<Setting> settings;
+  std::vector<std::string> shown;
+  const auto set = [&](const std::string& key, const TomlNode& value, std::string name) {
+    settings.push_back({key, value, {file(), value.line, value.column, true}});
+    shown.push_back(std::move(name));
   };
   for (const auto& [key, value] : set_) set(key, *value, "set." + key);
   const char* voltage = is_sine(alone.supply.type) ? "supply.amplitude" : "supply.voltage";
   if (held_voltage_) set(voltage, *held_voltage_, "study.hold.voltage");
-  const std::size_t own = overrides.size();
-  overrides.insert(overrides.end(), overrides_.begin(), overrides_.end());
   try {
-    return write_design(read_design(vehicle, overrides));
+    return read_design(vehicle, settings, overrides_);
   } catch (const InputError& error) {
     InputErrors errors;
     const auto add = [&](const InputError& e) {
-      for (std::size_t k = 0; k < own; ++k) {
-        if (e.file() != "--set " + one_line(overrides[k], 120)) continue;
-        const auto& [place, key] = origins[k];
-        return errors.add(InputError(file(), place.line, place.column, key, reason_of(e)));
+      for (std::size_t k = 0; k < settings.size(); ++k) {
+        const Origin& o = settings[k].origin;
+        if (e.file() != o.file || e.line() != o.line || e.column() != o.column) continue;
+        return errors.add(InputError(o.file, o.line, o.column, shown[k], reason_of(e)));
       }
       errors.add(e);
     };
@@ -263,7 +242,7 @@ Design<double> StudySections::read_vehicle(const std::filesystem::path& folder) 
   if (!std::filesystem::exists(vehicle)) {
     refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
   }
-  return parse_design(vehicle_text(vehicle), "the vehicle with [set]");
+  return vehicle_in(vehicle);
 }
 
 Metric StudySections::metric_called(const TomlNode& node, const std::string& where, const std::string& name) const {

@@ -23,9 +23,6 @@ namespace wingbeat::detail {
 
 using Kind = TomlNode::Kind;
 
-/// A node as a TOML value on one line.
-std::string toml_value(const TomlNode& node);
-
 /// What an error of a vehicle says, without its place: `key: reason`.
 std::string reason_of(const InputError& error);
 
@@ -55,8 +52,8 @@ class StudySections : public TomlReader {
 
   [[noreturn]] void refuse_file(const char* section, const char* key, const std::string& message) const;
 
-  /// The vehicle file with [set], a held voltage and the overrides of the command line, complete in itself.
-  std::string vehicle_text(const std::filesystem::path& vehicle) const;
+  /// The vehicle in a file with [set], a held voltage and the overrides of the command line.
+  Design<double> vehicle_in(const std::filesystem::path& vehicle) const;
 
  protected:
   void known_keys(const TomlNode& table, const std::string& section,

@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "files/design_settings.hpp"
 #include "files/study_sections.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/files/units.hpp"
@@ -90,8 +91,7 @@ class SweepChecks {
 
   SweepVariant variant(std::size_t index) {
     SweepVariant result;
-    std::vector<std::string> overrides;
-    std::vector<std::string> keys;
+    std::vector<Setting> settings;
     for (std::size_t a = 0; a < sweep_.axes.size(); ++a) {
       const SweepAxis& axis = sweep_.axes[a];
       if (sweep_.variant_stride[a] == 0) continue;
@@ -106,21 +106,27 @@ class SweepChecks {
           value.kind = q.labels.empty() ? Kind::number : Kind::text;
           if (q.labels.empty()) value.number = q.values[n];
           else value.text = q.labels[n];
-          overrides.push_back(fmt::format("{}={}", q.key, toml_value(value)));
-          keys.push_back(q.key);
+          const SourceLocation place = places_.keys.at(q.key);
+          settings.push_back({q.key, std::move(value), {reader_.file(), place.line, place.column, true}});
         }
       }
     }
+    if (settings.empty() && input_.design) {
+      result.design = *input_.design;
+      return result;
+    }
     try {
-      result.design = parse_design(input_.vehicle, "the vehicle with [set]", overrides);
-    } catch (const InputError& error) {
-      for (std::size_t k = 0; k < overrides.size(); ++k) {
-        if (error.file() == "--set " + one_line(overrides[k], 120)) {
-          reader_.refuse(places_.keys.at(keys[k]), "axis", reason_of(error));
-        }
+      if (!vehicle_) {
+        const char* name = "the vehicle with [set]";
+        vehicle_ = input_.design ? document_of(*input_.design, name) : parse_document(input_.vehicle, name);
       }
-      if (!keys.empty()) reader_.refuse(places_.keys.at(keys.front()), "axis", reason_of(error));
-      throw;
+      result.design = design_of(*vehicle_, settings);
+    } catch (const InputError& error) {
+      if (settings.empty()) throw;
+      const Origin& first = settings.front().origin;
+      const bool of_setting = error.file() == first.file;
+      reader_.refuse({of_setting ? error.line() : first.line, of_setting ? error.column() : first.column}, "axis",
+                     reason_of(error));
     }
     return result;
   }
@@ -250,6 +256,7 @@ class SweepChecks {
   const TomlReader& reader_;
   const SweepPlaces& places_;
   const StudyInput& input_;
+  std::optional<Document> vehicle_;
 };
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/netcdf.hpp"
+#include "wingbeat/files/netcdf_results.hpp"
 #include "wingbeat/files/units.hpp"
 
 namespace wingbeat {
@@ -167,27 +168,18 @@ std::vector<std::uint64_t> prepare_data_set(const fs::path& path, const Study& s
     sample =
         file.define_dense(sweep.axes[a].name, {dimensions[a]}, "1", "number of the sample, from 0", Storage::whole);
   }
-  const auto define = [&](const char* name, const char* unit, const char* meaning, Storage storage) {
-    const auto variable = file.define_dense(name, dimensions, unit, meaning, storage);
+  const auto with_coordinates = [&](NetcdfFile::Variable variable) {
     if (!auxiliary.empty()) file.set_attribute(variable, "coordinates", auxiliary);
     return variable;
   };
+  const auto define = [&](const char* name, const char* unit, const char* meaning, Storage storage) {
+    return with_coordinates(file.define_dense(name, dimensions, unit, meaning, storage));
+  };
   std::vector<NetcdfFile::Variable> columns;
-  columns.push_back(define("status", "1", "what the vehicle does from rest", Storage::flag));
-  std::vector<std::string> meanings;
-  for (int s = 0; s < sweep_status_count; ++s) meanings.push_back(name_of(SweepStatus(s)));
-  file.set_flags(columns.back(), meanings);
+  columns.push_back(with_coordinates(define_status(file, dimensions)));
   columns.push_back(define("recomputed", "1", "solver that gave the result", Storage::flag));
   file.set_flags(columns.back(), std::vector<std::string>{"batch", "scalar"});
-  columns.push_back(define("domain", "1", "limits of the model's domain that are exceeded", Storage::masks));
-  std::vector<std::string> limits;
-  for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
-  file.set_flag_masks(columns.back(), limits);
-  std::string limits_in_words = "0: inside, or not flapping (see status). ";
-  for (const DomainLimitInfo& limit : domain_limit_table()) {
-    limits_in_words += fmt::format("{}{}", &limit == domain_limit_table().data() ? "" : "; ", limit.meaning);
-  }
-  file.set_attribute(columns.back(), "comment", limits_in_words);
+  columns.push_back(with_coordinates(define_domain(file, dimensions)));
   columns.push_back(define("error_estimate", "1", "estimated relative error of the metrics", Storage::real));
   for (const Metric m : kept_metrics(sweep)) {
     columns.push_back(define(metric_info(m).key, metric_info(m).unit, metric_info(m).long_name, Storage::real));
@@ -271,7 +263,8 @@ Study read_study_in_data_set(const fs::path& path) {
     StudyInput input;
     const auto study = file.attribute("study"), vehicle = file.attribute("vehicle"),
                tolerance = file.attribute("tolerance");
-    if (!study || !vehicle || !tolerance) refuse("holds no study: it was not written by wingbeat sweep");
+    const bool swept = file.attribute(fingerprint_attribute).has_value();
+    if (!study || !vehicle || !tolerance || !swept) refuse("holds no study: it was not written by wingbeat sweep");
     input.study_name = path.string() + " (study)";
     if (const auto name = file.attribute("study_name")) input.study_name = *name;
     input.study = *study;

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/netcdf.hpp"
+#include "wingbeat/files/netcdf_results.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
@@ -16,7 +16,8 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
                           .version = version,
                           .vehicle = write_design(study.design),
                           .study = input,
-                          .condition = name_of(study.condition)});
+                          .condition = name_of(study.condition),
+                          .tolerance = study.options.tolerance});
   const std::size_t base = std::size_t(base_count(study));
   const auto sample = data.define_dimension("sample", base);
   const Sweep sweep = tolerance_sweep(study);
@@ -26,34 +27,27 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
     data.set_key(variable, q.key);
     data.write(variable, std::span(q.values).subspan(0, base));
   }
-  const auto status =
-      data.define_dense("status", {sample}, "1", "what became of the vehicle", NetcdfFile::Storage::flag);
-  std::vector<std::string> names;
-  for (int s = 0; s < sweep_status_count; ++s) names.push_back(name_of(SweepStatus(s)));
-  data.set_flags(status, names);
-  data.write_run(status, 0, std::span(columns.status).subspan(0, base));
-  const auto domain = data.define_dense("domain", {sample}, "1", "limits of the model's domain that are exceeded",
-                                        NetcdfFile::Storage::masks);
-  std::vector<std::string> limits;
-  for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
-  data.set_flag_masks(domain, limits);
-  data.write_run(domain, 0, std::span(columns.domain).subspan(0, base));
+  data.write_run(define_status(data, {sample}), 0, std::span(columns.status).subspan(0, base));
+  data.write_run(define_domain(data, {sample}), 0, std::span(columns.domain).subspan(0, base));
   for (int m = 0; m < metric_count; ++m) {
     if (!study.options.metrics[std::size_t(m)]) continue;
-    const MetricInfo& info = metric_info(Metric(m));
-    const auto variable = data.define_variable(info.key, {sample}, info.unit, info.long_name);
-    data.write(variable, samples_of(study, columns, Metric(m)));
+    data.write(define_metric(data, Metric(m), {sample}), samples_of(study, columns, Metric(m)));
   }
 
   const auto inputs = factors(study);
   const auto factor = data.define_dimension("factor", inputs.size());
   const auto output = data.define_dimension("output", result.outputs.size());
-  std::vector<std::string> labels;
+  std::vector<std::string> labels, units;
   for (const ToleranceFactor& f : inputs) labels.push_back(f.name);
   data.define_texts("factor", factor, labels, "what varies independently");
   labels.clear();
-  for (const ToleranceOutput& o : result.outputs) labels.push_back(o.name);
+  for (const ToleranceOutput& o : result.outputs) {
+    const int metric = metric_index(o.name);
+    labels.push_back(o.name);
+    units.push_back(metric == metric_count ? "1" : metric_info(Metric(metric)).unit);
+  }
   data.define_texts("output", output, labels, "metric, or 0 and 1 for flaps and hovers");
+  data.define_texts("output_unit", output, units, "unit of the output");
   const auto table = [&](const char* name, const char* meaning, const auto& value) {
     std::vector<double> values;
     for (const ToleranceOutput& o : result.outputs) {

@@ -15,6 +15,7 @@
 
 #include "files/toml_prevalidation.hpp"
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/files/toml_text.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
@@ -283,14 +284,9 @@ TomlNode override_value(std::string_view text, const Origin& origin) {
   origin.refuse("", "neither a TOML value nor one line of plain UTF-8 text");
 }
 
-void apply_override(Document& document, const std::string& assignment) {
-  Origin origin;
-  origin.file = "--set " + one_line(assignment, 120);
-  origin.overridden = true;
-  const auto equals = assignment.find('=');
-  if (equals == std::string::npos) origin.refuse("", "expected KEY=VALUE, as in --set supply.voltage=\"3 V\"");
-  const std::string path(detail::trimmed(std::string_view(assignment).substr(0, equals)));
-  const std::string_view text = detail::trimmed(std::string_view(assignment).substr(equals + 1));
+/// `give()` makes the node.
+template <class Give>
+void apply_override(Document& document, const std::string& path, const Origin& origin, const Give& give) {
   if (!find_parameter<double>(path) && !is_section(path)) {
     origin.refuse(one_line(path), unknown_key_message(path));
   }
@@ -305,7 +301,7 @@ void apply_override(Document& document, const std::string& assignment) {
     document.sections.try_emplace(above, origin);
   }
   Flattener flattener(document, origin);
-  flattener.enter(override_value(text, origin), path, origin);
+  flattener.enter(give(), path, origin);
 
   const auto from_file = [](const Value& value) { return !value.origin.overridden; };
   for (const auto& key : parameter_table<double>()) {
@@ -314,6 +310,15 @@ void apply_override(Document& document, const std::string& assignment) {
       if (at_or_below(path, other)) erase_below(document.values, key.path, from_file);
     }
   }
+}
+
+void apply_override(Document& document, const std::string& assignment) {
+  const Origin origin{"--set " + one_line(assignment, 120), 0, 0, true};
+  const auto equals = assignment.find('=');
+  if (equals == std::string::npos) origin.refuse("", "expected KEY=VALUE, as in --set supply.voltage=\"3 V\"");
+  const std::string path(detail::trimmed(std::string_view(assignment).substr(0, equals)));
+  const std::string_view text = detail::trimmed(std::string_view(assignment).substr(equals + 1));
+  apply_override(document, path, origin, [&] { return override_value(text, origin); });
 }
 
 }  // namespace
@@ -351,6 +356,28 @@ std::string kind_of(const TomlNode& node) {
   return node.text;
 }
 
+std::string toml_value(const TomlNode& node) {
+  std::string text;
+  switch (node.kind) {
+    case TomlNode::Kind::text: return toml_text(node.text);
+    case TomlNode::Kind::number:
+      if (node.whole) return fmt::format("{:.0f}", node.number);
+      text = fmt::format("{}", node.number);
+      return text.find_first_not_of("-0123456789") == std::string::npos ? text + ".0" : text;
+    case TomlNode::Kind::boolean: return node.number != 0.0 ? "true" : "false";
+    case TomlNode::Kind::array:
+      for (const TomlNode& item : node.items) text += (text.empty() ? "" : ", ") + toml_value(item);
+      return "[" + text + "]";
+    case TomlNode::Kind::table:
+      for (const auto& [key, value] : node.members) {
+        text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", toml_key(key), toml_value(value));
+      }
+      return "{" + text + "}";
+    case TomlNode::Kind::other: break;
+  }
+  return "1970-01-01";
+}
+
 const Value* Document::find(std::string_view path) const {
   const auto found = values.find(path);
   return found == values.end() ? nullptr : &found->second;
@@ -379,8 +406,11 @@ Document parse_document(std::string_view text, std::string_view file_name) {
   return document;
 }
 
-void apply_overrides(Document& document, std::span<const std::string> overrides) {
+void apply_overrides(Document& document, std::span<const Setting> settings, std::span<const std::string> overrides) {
   InputErrors errors;
+  for (const auto& [path, value, origin] : settings) {
+    errors.attempt([&, &p = path, &v = value, &o = origin] { apply_override(document, p, o, [&] { return v; }); });
+  }
   for (const std::string& assignment : overrides) errors.attempt([&] { apply_override(document, assignment); });
   for (const auto& key : parameter_table<double>()) {
     if (key.only_with.empty()) continue;

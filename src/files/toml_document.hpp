@@ -57,6 +57,9 @@ TomlNode parse_toml_tree(std::string_view text, std::string_view file_name, std:
 /// "a number", "an array": what a node is, for messages.
 std::string kind_of(const TomlNode& node);
 
+/// A node as a TOML value on one line.
+std::string toml_value(const TomlNode& node);
+
 /// A value of a vehicle file or of an override; what it holds has its place.
 struct Value : TomlNode {
   Origin origin;
@@ -79,7 +82,15 @@ struct Document {
 /// Throws InputError for text that is not TOML. Unknown keys are among the document's errors.
 Document parse_document(std::string_view text, std::string_view file_name);
 
-/// Applies overrides as read_design documents it. Throws InputError for those that cannot be, the others being applied.
-void apply_overrides(Document& document, std::span<const std::string> overrides);
+/// A value that replaces one of a vehicle file, as an override does, without a text of its own.
+struct Setting {
+  std::string path;
+  TomlNode value;
+  Origin origin;  ///< what messages name; `overridden`
+};
+
+/// Applies settings, then overrides, as read_design documents the latter. Throws InputError for those that cannot be,
+/// the others being applied.
+void apply_overrides(Document& document, std::span<const Setting> settings, std::span<const std::string> overrides);
 
 }  // namespace wingbeat

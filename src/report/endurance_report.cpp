@@ -14,6 +14,7 @@
 #include "report/layout.hpp"
 #include "report/result_schemas.hpp"
 #include "report/result_trees.hpp"
+#include "wingbeat/files/netcdf_results.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/report.hpp"
 
@@ -413,14 +414,9 @@ void write_endurance(const EnduranceResult& result, const Provenance& provenance
     if (!of_a_flight(Metric(m))) metrics.push_back(Metric(m));
   }
   for (const Metric m : metrics) {
-    const MetricInfo& info = metric_info(m);
-    variables.push_back(file.define_variable(info.key, {time}, info.unit, info.long_name));
+    variables.push_back(define_metric(file, m, {time}));
   }
-  const auto domain = file.define_dense("domain", {time}, "1", "limits of the model's domain that are exceeded",
-                                        NetcdfFile::Storage::masks);
-  std::vector<std::string> limits;
-  for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
-  file.set_flag_masks(domain, limits);
+  const auto domain = define_domain(file, {time});
   file.set_attribute("end", name_of(result.end));
   file.set_attribute("end_detail", describe(result));
   file.set_attribute("hover", name_of(result.hover));

@@ -13,7 +13,7 @@
 #include "report/vehicle_counts.hpp"
 #include "wingbeat/cycle/metric_gradients.hpp"
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/netcdf.hpp"
+#include "wingbeat/files/netcdf_results.hpp"
 #include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
@@ -232,7 +232,8 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
                           .vehicle = write_design(study.vehicles[0].design),
                           .study = input,
                           .condition = name_of(study.condition),
-                          .method = algorithm_of(study.evolution.method)});
+                          .method = algorithm_of(study.evolution.method),
+                          .tolerance = study.tolerance});
   const auto parameters = parameters_of(study);
   const auto designs = [&](const std::string& dimension, const std::string& prefix, const char* role,
                            std::span<const ParetoDesign> list, const MetricSet& metrics) {
@@ -255,18 +256,13 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
     }
     for (std::size_t m = 0; m < metric_count; ++m) {
       if (!metrics[m]) continue;
-      column(metric_table()[m].key, metric_table()[m].unit, metric_table()[m].long_name,
-             [m](const ParetoDesign& d) { return d.metrics.values[m]; });
+      std::transform(list.begin(), list.end(), values.begin(),
+                     [m](const ParetoDesign& d) { return d.metrics.values[m]; });
+      data.write(define_metric(data, Metric(m), {along}, prefix, role), values);
     }
-    const auto domain = data.define_dense(prefix + "domain", {along}, "1",
-                                          std::string("limits of the model's domain that are exceeded") + role,
-                                          NetcdfFile::Storage::masks);
-    std::vector<std::string> limits;
-    for (const DomainLimitInfo& limit : domain_limit_table()) limits.push_back(limit.key);
-    data.set_flag_masks(domain, limits);
     std::vector<std::int16_t> exceeded;
     for (const ParetoDesign& d : list) exceeded.push_back(std::int16_t(d.domain.to_ulong()));
-    data.write_run(domain, 0, std::span<const std::int16_t>(exceeded));
+    data.write_run(define_domain(data, {along}, prefix, role), 0, std::span<const std::int16_t>(exceeded));
     if (study.vehicles.size() > 1) {
       std::vector<std::string> names;
       for (const ParetoDesign& d : list) names.push_back(study.vehicles[d.vehicle].name);
@@ -286,28 +282,28 @@ void write_front(const ParetoStudy& study, const ParetoResult& r, const std::str
   for (const ParetoObjective& o : study.objectives) asked.set(std::size_t(o.metric));
   for (const MetricConstraint& c : study.constraints) asked.set(std::size_t(c.metric));
   const auto solved = designs("evaluated", "evaluated_", ", of every design solved", r.evaluated, asked);
-  const auto flag = [&](const char* name, const char* meaning, const std::vector<std::string>& names,
-                        const auto& value) {
-    const auto variable = data.define_dense(name, {solved}, "1", meaning, NetcdfFile::Storage::flag);
-    data.set_flags(variable, names);
+  const auto write_flags = [&](const NetcdfFile::Variable& variable, const auto& value) {
     std::vector<std::int8_t> values;
     for (std::size_t n = 0; n < r.evaluated.size(); ++n) values.push_back(std::int8_t(value(n)));
     data.write_run(variable, 0, std::span<const std::int8_t>(values));
   };
-  std::vector<std::string> statuses;
-  for (int s = 0; s < sweep_status_count; ++s) statuses.push_back(name_of(SweepStatus(s)));
-  flag("evaluated_status", "what became of the design", statuses, [&](std::size_t n) { return r.status[n]; });
-  flag("evaluated_feasible", "flapping, inside the model's domain and within every constraint", {"no", "yes"},
-       [&](std::size_t n) { return r.feasible[n] ? 1 : 0; });
+  write_flags(define_status(data, {solved}, "evaluated_"), [&](std::size_t n) { return r.status[n]; });
+  const auto feasible =
+      data.define_dense("evaluated_feasible", {solved}, "1",
+                        "flapping, inside the model's domain and within every constraint", NetcdfFile::Storage::flag);
+  data.set_flags(feasible, std::vector<std::string>{"no", "yes"});
+  write_flags(feasible, [&](std::size_t n) { return r.feasible[n] ? 1 : 0; });
 
   const auto objective = data.define_dimension("objective", study.objectives.size());
-  std::vector<std::string> names, senses;
+  std::vector<std::string> names, senses, units;
   for (const ParetoObjective& o : study.objectives) {
     names.push_back(metric_info(o.metric).key);
     senses.push_back(o.maximise ? "maximise" : "minimise");
+    units.push_back(metric_info(o.metric).unit);
   }
   data.define_texts("objective", objective, names, "metric");
   data.define_texts("sense", objective, senses, "whether the objective is minimised or maximised");
+  data.define_texts("objective_unit", objective, units, "unit of the metric");
   data.write(data.define_variable("reference", {objective}, "1",
                                   "reference point of the hypervolume, in the unit of the objective"),
              r.reference);

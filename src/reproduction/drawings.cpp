@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "report/mechanism_drawing.hpp"
+#include "report/svg.hpp"
 #include "reproduction/sheet.hpp"
 #include "wingbeat/report/report.hpp"
 
@@ -57,63 +58,49 @@ std::string moving(const AnyTransmission<double>& transmission, const CycleCase&
   constexpr std::size_t frames = 45;
   constexpr double slowed = 40.0, mm = 1e3;
   const SliderCrank<double>& crank = transmission.slider_crank;
-  const double H = mm * crank.hinge_offset, r = mm * crank.crank_radius, y0 = mm * crank.mid_stroke_height;
-  const double wing = drawn_wing_length(transmission), half = 1.05 * (H + mm * wing), high = y0 + 3.2 * H,
+  const double H = crank.hinge_offset, r = crank.crank_radius, y0 = crank.mid_stroke_height;
+  const double wing = drawn_wing_length(transmission), half = 1.05 * (H + wing), high = y0 + 3.2 * H,
                low = -r - 0.9 * H;
   const double seconds = slowed * (rows.back().time - rows.front().time);
   std::vector<MechanismPose> poses;
   for (std::size_t n = 0; n <= frames; ++n) {
     poses.push_back(pose_of(transmission, rows[n * (rows.size() - 1) / frames].crank_angle, wing));
   }
-  // A line that moves; where nothing does, as on paper, it is at its first frame.
-  std::string attributes, animations;
-  const auto animate = [&](const char* attribute, const auto& value) {
-    attributes += fmt::format(" {}=\"{:.2f}\"", attribute, value(poses.front()));
-    std::string values;
-    for (const MechanismPose& p : poses) values += fmt::format("{}{:.2f}", values.empty() ? "" : ";", value(p));
-    animations +=
-        fmt::format("<animate attributeName=\"{}\" dur=\"{:.3f}s\" repeatCount=\"indefinite\" values=\"{}\"/>",
-                    attribute, seconds, values);
-  };
-  std::string svg = fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"{:.2f} {:.2f} {:.2f} {:.2f}\" width=\"672\" role=\"img\" "
-      "font-family=\"sans-serif\" font-size=\"2.1\">\n<title>{}</title>\n"
-      "<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"#ffffff\"/>\n",
-      -half, -high, 2.0 * half, high - low, label, -half, -high, 2.0 * half, high - low);
-  svg += fmt::format(
-      "<path d=\"M0 {:.2f}V{:.2f}M{:.2f} {:.2f}H{:.2f}\" stroke=\"#b0b0b0\" stroke-width=\"0.15\" stroke-dasharray=\"1 "
-      "0.6\" fill=\"none\"/>\n<circle r=\"{:.2f}\" fill=\"none\" stroke=\"#b0b0b0\" stroke-width=\"0.15\"/>\n",
-      -low - 0.4 * H, -high + 0.5 * H, -half, -y0, half, r);
+  SvgDrawing svg(mm, {}, 2);
+  const char* faint = "stroke=\"#b0b0b0\" stroke-width=\"0.15\" stroke-dasharray=\"1 0.6\"";
+  svg.line({0.0, low + 0.4 * H}, {0.0, high - 0.5 * H}, faint);
+  svg.line({-half, y0}, {half, y0}, faint);
+  svg.circle({}, r, "fill=\"none\" stroke=\"#b0b0b0\" stroke-width=\"0.15\"");
   for (const MechanismPose::Link& link : poses.front().links) {
-    const auto from = [&](const MechanismPose& p) { return p.at(link.from); };
-    const auto to = [&](const MechanismPose& p) { return p.at(link.to); };
+    const auto animation = [&](const char* attribute, std::string_view joint, auto coordinate) {
+      std::vector<double> values;
+      for (const MechanismPose& p : poses) values.push_back((svg.*coordinate)(p.at(joint)));
+      return svg.animation(attribute, values, seconds);
+    };
     const MechanismStyle style = style_of(link.role);
-    attributes.clear();
-    animations.clear();
-    animate("x1", [&](const MechanismPose& p) { return mm * from(p).x; });
-    animate("y1", [&](const MechanismPose& p) { return -mm * from(p).y; });
-    animate("x2", [&](const MechanismPose& p) { return mm * to(p).x; });
-    animate("y2", [&](const MechanismPose& p) { return -mm * to(p).y; });
-    svg += fmt::format("<line stroke=\"{}\" stroke-width=\"{:.2f}\" stroke-linecap=\"round\"{}>{}</line>\n",
-                       style.colour, 0.33 * style.weight, attributes, animations);
+    // Where nothing moves, as on paper, it is at its first frame.
+    svg.line(poses.front().at(link.from), poses.front().at(link.to),
+             fmt::format("stroke=\"{}\" stroke-width=\"{:.2f}\" stroke-linecap=\"round\"", style.colour,
+                         0.33 * style.weight),
+             animation("x1", link.from, &SvgDrawing::x) + animation("y1", link.from, &SvgDrawing::y) +
+                 animation("x2", link.to, &SvgDrawing::x) + animation("y2", link.to, &SvgDrawing::y));
   }
   for (const MechanismPose::Joint& joint : poses.front().joints) {
     if (!joint.fixed) continue;
-    const PlanePoint p{mm * joint.position.x, mm * joint.position.y};
     if (cycle.flapping_case.springs && joint.name != "axis") {
-      std::string path;
-      for (const PlanePoint& q : spring_spiral(p, 0.1 * H, 0.42 * H)) {
-        path += fmt::format("{}{:.2f} {:.2f}", path.empty() ? "M" : "L", q.x, -q.y);
-      }
-      svg += fmt::format("<path d=\"{}\" fill=\"none\" stroke=\"#009e73\" stroke-width=\"0.25\"/>\n", path);
+      svg.polyline(spring_spiral(joint.position, 0.1 * H, 0.42 * H),
+                   "fill=\"none\" stroke=\"#009e73\" stroke-width=\"0.25\"");
     }
-    svg += fmt::format(
-        "<circle cx=\"{:.2f}\" cy=\"{:.2f}\" r=\"{:.2f}\" fill=\"#ffffff\" stroke=\"#202020\" stroke-width=\"0.2\"/>\n",
-        p.x, -p.y, 0.12 * H);
+    svg.circle(joint.position, 0.12 * H, "fill=\"#ffffff\" stroke=\"#202020\" stroke-width=\"0.2\"");
   }
-  svg += fmt::format("<text x=\"{:.2f}\" y=\"{:.2f}\" fill=\"{}\">{}, {:g} times slowed</text>\n</svg>\n",
-                     -half + 0.3 * H, -low - 0.25 * H, style::ink, label, slowed);
-  return svg;
+  svg.text({-half + 0.3 * H, low + 0.25 * H}, fmt::format("fill=\"{}\"", style::ink),
+           fmt::format("{}, {:g} times slowed", label, slowed));
+  const std::string box =
+      fmt::format("{:.2f} {:.2f} {:.2f} {:.2f}", -mm * half, -mm * high, 2.0 * mm * half, mm * (high - low));
+  return svg.file(
+      fmt::format("viewBox=\"{}\" width=\"672\" role=\"img\" font-family=\"sans-serif\" font-size=\"2.1\"", box), label,
+      fmt::format("<rect x=\"{:.2f}\" y=\"{:.2f}\" width=\"{:.2f}\" height=\"{:.2f}\" fill=\"#ffffff\"/>\n", -mm * half,
+                  -mm * high, 2.0 * mm * half, mm * (high - low)));
 }
 
 }  // namespace

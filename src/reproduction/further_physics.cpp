@@ -7,6 +7,7 @@
 #include <cmath>
 #include <utility>
 
+#include "files/design_settings.hpp"
 #include "reproduction/dot_plot.hpp"
 #include "reproduction/html.hpp"
 #include "reproduction/trend_figure.hpp"
@@ -74,7 +75,6 @@ double FurtherVariant::efficiency_gain() const {
 std::vector<FurtherVariant> further_physics(const SpringPair& pair, const ReproductionOptions& options,
                                             const ForEach& for_each) {
   std::vector<FurtherVariant> variants = variants_of(pair);
-  const std::string text[] = {write_design(pair[0]), write_design(pair[1])};
   struct Task {
     FurtherVariant* variant;
     FurtherRun FurtherVariant::* run;
@@ -94,7 +94,7 @@ std::vector<FurtherVariant> further_physics(const SpringPair& pair, const Reprod
     const Task& task = tasks[n];
     std::vector<std::string> settings = task.variant->settings;
     if (!task.friction) settings.push_back("friction.type=none");
-    Design<double> design = parse_design(text[task.springs ? 1 : 0], "the paper's vehicle", settings);
+    Design<double> design = design_of(document_of(pair[task.springs ? 1 : 0], "the paper's vehicle"), {}, settings);
     RunOptions run;
     run.allow_extrapolation = true;  // equation (1) is taken as printed, whatever it fails to conserve
     if (task.voltage > 0.0) design.supply = {SupplyType::constant, task.voltage, 0.0, 1.0};

@@ -36,6 +36,7 @@ class DataSets : public Program {
     const std::string version = text(NC_GLOBAL, "wingbeat_version");
     EXPECT_NE(version, "");
     EXPECT_EQ(text(NC_GLOBAL, "source"), "wingbeat " + version + " " + command);
+    EXPECT_NE(text(NC_GLOBAL, "tolerance"), "");
     ASSERT_EQ(nc_inq_nvars(id, &variables), NC_NOERR);
     EXPECT_GT(variables, 3);
     for (int v = 0; v < variables; ++v) {
@@ -67,6 +68,7 @@ TEST_F(DataSets, CarryTheSameAttributes) {
     expect_alike(file, arguments.front());
   };
   expect_written({"run", plain, "--waveforms", path("w.nc")}, "w.nc");
+  expect_written({"linearise", plain, "--no-maps", "-o", path("l.nc")}, "l.nc");
   expect_written({"endurance", data + "/designs/friction2022-battery.toml", "-o", path("e.nc")}, "e.nc");
   expect_written(
       {"sweep", study("s.toml", "[[axis]]\nkey = \"supply.voltage\"\nfrom = \"2 V\"\nto = \"3 V\"\ncount = 3\n"), "-o",

@@ -1,8 +1,11 @@
 // Vehicle files: what is read, what is written back, overrides.
 #include <gmock/gmock.h>
 
+#include <bit>
+#include <cstdint>
 #include <fstream>
 
+#include "files/design_settings.hpp"
 #include "files/vehicle_text.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -67,6 +70,19 @@ TEST(DesignFile, WritesWhatReadsBackBitIdentical) {
     const Design<double> design = parse_design(vehicle_text, "v.toml", overrides);
     const std::string text = write_design(design);
     EXPECT_EQ(fingerprint(parse_design(text, "written.toml")), fingerprint(design)) << text;
+    EXPECT_EQ(fingerprint(design_of(document_of(design, "the design"), {})), fingerprint(design)) << text;
+  }
+}
+
+TEST(DesignFile, ValuesInTomlReadBack) {
+  for (const double x : {1e-7, -0.0, 5.0, 0.1, 1e22, 123456789012345680.0, -2.5e-300}) {
+    TomlNode node;
+    node.kind = TomlNode::Kind::number;
+    node.number = x;
+    const TomlNode read = parse_toml_tree("x = " + toml_value(node), "values").members.at(0).node;
+    EXPECT_EQ(read.kind, TomlNode::Kind::number);
+    EXPECT_FALSE(read.whole);
+    EXPECT_EQ(std::bit_cast<std::uint64_t>(read.number), std::bit_cast<std::uint64_t>(x)) << toml_value(node);
   }
 }
 

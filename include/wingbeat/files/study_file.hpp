@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -12,11 +13,12 @@ namespace wingbeat {
 
 /// Everything a study is made from, as texts: what goes into its data set, so that it can be run again.
 struct StudyInput {
-  std::string study_name;  ///< file name, for messages
-  std::string study;       ///< the study file
-  std::string vehicle;     ///< the vehicle with [set] and a held voltage applied, complete in itself
-  std::string table_name;  ///< of a CSV of designs
-  std::string table;
+  std::string study_name;       ///< file name, for messages
+  std::string study;            ///< the study file
+  std::string vehicle = {};     ///< the vehicle with [set] and a held voltage applied, complete in itself
+  std::string table_name = {};  ///< of a CSV of designs
+  std::string table = {};
+  std::optional<Design<double>> design = {};  ///< the vehicle; where it is not given, its text is read
 };
 
 struct Study {

@@ -19,7 +19,7 @@ from ._operations import operation
 from ._progress import shown
 from ._study import without_place
 from ._tables import metric_rows
-from ._vehicle import Vehicle, _assignments, _toml, _toml_key, vehicle_of
+from ._vehicle import Vehicle, keys_of, plain, vehicle_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -131,7 +131,7 @@ Study = str | os.PathLike[str] | Mapping[str, Any]
 
 def values_of(values: Mapping[str, Any] | None) -> list[str]:
     """Keys of the vehicle with other values, as a study takes them."""
-    return [] if values is None else _assignments(mapping("values", values))
+    return [] if values is None else [f"{key}={_core.toml(value)}" for key, value in keys_of(values).items()]
 
 
 @contextmanager
@@ -154,8 +154,9 @@ def _file_of(study: Study, vehicle: Vehicle | None) -> Iterator[bytes]:
             file.write_text(vehicle_of(vehicle).to_toml(), encoding="utf-8")
             tables["study"]["vehicle"] = str(file)
         name = pathlib.Path(folder) / "study.toml"
-        lines = (f"{_toml_key(key)} = {_toml(value, key)}\n" for key, value in tables.items())
-        name.write_text("".join(lines), encoding="utf-8")
+        # The members of a table in braces are lines without them.
+        lines = (_core.toml({key: plain(value, key)})[1:-1] for key, value in tables.items())
+        name.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
         with without_place(str(name)):
             yield os.fsencode(name)
 

@@ -6,10 +6,11 @@ from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
+from . import _core
 from ._errors import InputError
 from ._tables import metric_called, metric_rows
 from ._arguments import names, text
-from ._vehicle import _toml
+from ._vehicle import plain
 
 
 def study_of(
@@ -23,7 +24,7 @@ def study_of(
     """The study file of a sweep over all combinations of values of keys."""
     lines = _study(title, tolerance, metrics, frequency)
     for key, values in axes.items():
-        lines += ["", "[[axis]]", f"key = {_toml(key)}", f"values = {_toml(values, key)}"]
+        lines += ["", "[[axis]]", f"key = {_core.toml(key)}", f"values = {_core.toml(plain(values, key))}"]
     return "\n".join(lines) + "\n"
 
 
@@ -32,21 +33,21 @@ def study_of_columns(
 ) -> str:
     """The study file of a single design, with one axis of all keys that vary."""
     lines = _study("", tolerance, metrics, frequency)
-    lines += ["", "[[axis]]", 'name = "design"', f"keys = {_toml(list(row))}"]
+    lines += ["", "[[axis]]", 'name = "design"', f"keys = {_core.toml(list(row))}"]
     values = list(row.values())
-    lines.append(f"values = {_toml([[value] for value in values] if len(values) > 1 else values)}")
+    lines.append(f"values = {_core.toml([[value] for value in values] if len(values) > 1 else values)}")
     return "\n".join(lines) + "\n"
 
 
 def _study(title: str, tolerance: float, metrics: Iterable[str] | None, frequency: float | None) -> list[str]:
-    lines = ["[study]", 'vehicle = "vehicle"', f"tolerance = {_toml(tolerance)}"]
+    lines = ["[study]", 'vehicle = "vehicle"', f"tolerance = {_core.toml(tolerance)}"]
     if text("title", title):
-        lines.append(f"title = {_toml(title)}")
+        lines.append(f"title = {_core.toml(title)}")
     if metrics is not None:
         wanted = [metric_rows[metric_called(name)].key for name in names("metrics", metrics)]
-        lines.append(f"metrics = {_toml(wanted)}")
+        lines.append(f"metrics = {_core.toml(wanted)}")
     if frequency is not None:
-        lines.append(f"hold = {{ frequency = {_toml(frequency)} }}")
+        lines.append(f"hold = {{ frequency = {_core.toml(frequency)} }}")
     return lines
 
 

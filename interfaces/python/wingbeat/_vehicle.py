@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import re
 import tomllib
@@ -30,59 +29,48 @@ if TYPE_CHECKING:
     from ._studies import Flight
 
 
-def _toml_text(value: str, key: str) -> str:
-    """A TOML string: JSON's, with all that TOML requires escaped."""
-    hidden = re.compile("[\x7f-\x9f\u061c\u200e\u200f\u2028-\u202e\u2066-\u2069\ufeff\ufff9-\ufffb\ufffe\uffff]")
-    return hidden.sub(lambda c: f"\\u{ord(c[0]):04x}", json.dumps(text(key, value), ensure_ascii=False))
-
-
-def _toml_key(key: str) -> str:
-    """A key of a table."""
-    return key if re.fullmatch("[A-Za-z0-9_-]+", key) else _toml_text(key, "key")
-
-
-def _toml(value: Any, key: str = "value") -> str:
-    """A value of Python, of that key, as a TOML value."""
+def plain(value: Any, key: str = "value") -> Any:
+    """A value of that key as the compiled half takes it: a number, True, False, a text, a list or a dict."""
     if type(value) is float:  # most of long arrays
-        return float.__repr__(value)
+        return value
     if isinstance(value, (bool, np.bool_)):
-        return "true" if value else "false"
+        return bool(value)
     if isinstance(value, str):
-        return _toml_text(value, key)
+        return text(key, value)
     if isinstance(value, Mapping):
-        return "{" + ", ".join(f"{_toml_key(k)} = {_toml(v, key)}" for k, v in mapping(key, value).items()) + "}"
+        return {text("key", k): plain(v, key) for k, v in mapping(key, value).items()}
     if isinstance(value, int) and abs(value) < 2**53:
-        return str(value)
+        return int(value)
     as_real = real(value)
     if as_real is not None:
-        return float.__repr__(as_real)
+        return as_real
     if isinstance(value, np.ma.MaskedArray):
         value = array(key, value)
     if hasattr(value, "tolist"):
         value = value.tolist()
     if isinstance(value, (list, tuple)):
-        return "[" + ", ".join([_toml(each, key) for each in value]) + "]"
+        return [plain(each, key) for each in value]
     raise wrong_type(key, "a number, a text with a unit, a table or rows", value)
 
 
-def _assignments(values: Mapping[str, Any]) -> list[str]:
-    """KEY=VALUE of each key; sections may be given as tables, {"motor": {"inertia": ...}}."""
-    made: dict[str, str] = {}
+def keys_of(values: Mapping[str, Any]) -> dict[str, Any]:
+    """The plain value of each key; sections may be given as tables, {"motor": {"inertia": ...}}."""
+    made: dict[str, Any] = {}
 
     def assign(key: str, value: Any) -> None:
         if not re.fullmatch("[A-Za-z0-9_.-]+", key):
             raise refused(ascii(key), "unknown key")
         if key in made:
             raise refused(key, "is given twice")
-        made[key] = _toml(value, key)
+        made[key] = plain(value, key)
 
-    for key, value in values.items():
+    for key, value in mapping("values", values).items():
         if isinstance(value, Mapping) and "." not in key:
             for name, inner in mapping(key, value).items():
                 assign(f"{key}.{name}", inner)
         else:
             assign(key, value)
-    return [f"{key}={value}" for key, value in made.items()]
+    return made
 
 
 class Vehicle(Sections):
@@ -119,7 +107,7 @@ class Vehicle(Sections):
     def __init__(self, values: Mapping[str, Any]) -> None:
         if not isinstance(values, Mapping):
             raise TypeError(f"values: expected a dict of keys, got {type(values).__name__}; wingbeat.read reads files")
-        self._take(_core.with_values(_assignments(mapping("values", values)), None))
+        self._take(_core.with_values(keys_of(values), None))
 
     def _take(self, design: _core.Design) -> None:
         object.__setattr__(self, "_design", design)
@@ -174,7 +162,7 @@ class Vehicle(Sections):
         >>> vehicle.replace({"transmission.crank_radius": "6 mm"}).transmission.crank_radius
         0.006 m
         """
-        return Vehicle._of(_core.with_values(_assignments(mapping("values", values)), self._design))
+        return Vehicle._of(_core.with_values(keys_of(values), self._design))
 
     __replace__ = replace
 
