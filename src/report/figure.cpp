@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
@@ -136,6 +137,10 @@ class WithoutPipeSignal {
   bool was_pending_ = false;
 };
 
+[[noreturn]] void throw_without_gnuplot() {
+  throw std::runtime_error("plots need gnuplot, which is not installed; on Debian: apt-get install gnuplot-nox");
+}
+
 pid_t start_gnuplot(const Pipe& input, const Pipe& output, const Pipe& errors, const sigset_t& signals) {
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
@@ -153,9 +158,7 @@ pid_t start_gnuplot(const Pipe& input, const Pipe& output, const Pipe& errors, c
   const int failure = ::posix_spawnp(&child, program, &actions, &attributes, arguments, environment.data());
   posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
-  if (failure == ENOENT) {
-    throw std::runtime_error("plots need gnuplot, which is not installed; on Debian: apt-get install gnuplot-nox");
-  }
+  if (failure == ENOENT) throw_without_gnuplot();
   if (failure != 0) throw std::runtime_error(fmt::format("cannot start gnuplot: {}", std::strerror(failure)));
   return child;
 }
@@ -167,6 +170,19 @@ std::string_view extension_of(const std::string& script) {
 }
 
 }  // namespace
+
+void require_gnuplot() {
+  const char* const path = std::getenv("PATH");
+  if (!path) return;  // the system then has a list of its own
+  std::string_view rest(path);
+  while (true) {
+    const auto end = rest.find(':');
+    const std::string folder(rest.substr(0, end));
+    if (::access((folder.empty() ? "gnuplot" : folder + "/gnuplot").c_str(), X_OK) == 0) return;
+    if (end == std::string_view::npos) throw_without_gnuplot();
+    rest.remove_prefix(end + 1);
+  }
+}
 
 std::string drawing_of(const std::string& script) {
   const WithoutPipeSignal quiet;

@@ -337,14 +337,15 @@ Assessment assess(const PublishedFile& file, const ForEach& for_each, const std:
   const bool laws_wanted = std::any_of(file.trends.begin(), file.trends.end(), [](const PublishedTrend& t) {
     return t.kind == PublishedTrend::Kind::best_friction_law;
   });
+  SolvedPoints points;
   std::vector<std::function<void()>> tasks;
   for (std::size_t f = 0; f < a.variants; ++f) {
     tasks.push_back([&, f] { a.comparisons[f] = compare(files[f]); });
     for (std::size_t t = 0; t < trends; ++t) {
       tasks.push_back([&, f, t] {
-        answers[t][f] = answer_to(files[f], file.trends[t]);
+        answers[t][f] = answer_to(files[f], file.trends[t], points);
         if (rests_on_points(file.trends[t])) return;
-        searched[t][f] = searched_interval(files[f], file.trends[t], answers[t][f]);
+        searched[t][f] = searched_interval(files[f], file.trends[t], answers[t][f], points);
       });
     }
   }

@@ -161,6 +161,7 @@ void prepare_reproduction_folder(const fs::path& folder, std::string_view paper,
 
 ReproduceResult reproduce_paper(const KnownPaper& paper, const ReproduceOptions& options) {
   using namespace reproduction;
+  require_gnuplot();
   fs::path folder = options.output;
   prepare_reproduction_folder(folder, paper.name, options.force);
   const std::set<std::string> known = listed_in(folder);

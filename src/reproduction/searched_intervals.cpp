@@ -26,8 +26,8 @@ PublishedFile moved(PublishedFile file, const UncertainPublished& u, double devi
 /// What a statement searches for, as a condition on its place.
 class PlaceSearch {
  public:
-  PlaceSearch(const PublishedTrend& t, const Answer& answer)
-      : t_(t), place_(answer.place), inside_(answer.inside), step_(0.01 * (t.to - t.from)) {}
+  PlaceSearch(const PublishedTrend& t, const Answer& answer, SolvedPoints& points)
+      : t_(t), points_(points), place_(answer.place), inside_(answer.inside), step_(0.01 * (t.to - t.from)) {}
 
   /// Settles the place as stated; whether it has one that parameters move.
   bool settle(const PublishedFile& file) {
@@ -41,7 +41,7 @@ class PlaceSearch {
 
   double number(const PublishedFile& file) const {
     const double place = inside_ ? solved(file) : place_;
-    if (t_.kind == TrendKind::peak) return searched_metric(file, t_, place);
+    if (t_.kind == TrendKind::peak) return searched_metric(file, t_, place, points_);
     return t_.kind == TrendKind::best_range ? place + 0.5 * width() : place;
   }
 
@@ -50,7 +50,7 @@ class PlaceSearch {
   double width() const { return *t_.published_end - *t_.published; }
 
   double condition(const PublishedFile& file, double x) const {
-    const auto metric_at = [&](double place) { return searched_metric(file, t_, place); };
+    const auto metric_at = [&](double place) { return searched_metric(file, t_, place, points_); };
     switch (t_.kind) {
       case TrendKind::crossing: return metric_at(x) - 1.0;
       case TrendKind::best_range: return metric_at(x + width()) - metric_at(x);
@@ -74,6 +74,7 @@ class PlaceSearch {
   }
 
   const PublishedTrend& t_;
+  SolvedPoints& points_;
   double place_, slope_ = absent;
   bool inside_;
   double step_;
@@ -96,13 +97,15 @@ std::vector<Interval> propagated(const PublishedFile& file, const std::vector<do
   return intervals;
 }
 
-Interval searched_interval(const PublishedFile& file, const PublishedTrend& t, const Answer& answer) {
+Interval searched_interval(const PublishedFile& file, const PublishedTrend& t, const Answer& answer,
+                           SolvedPoints& points) {
   if (!std::isfinite(answer.value) || file.uncertain.empty()) return {};
   if (!is_searched(t)) {
-    return propagated(file, {answer.value},
-                      [&](const PublishedFile& varied) { return std::vector<double>{answer_to(varied, t).value}; })[0];
+    return propagated(file, {answer.value}, [&](const PublishedFile& varied) {
+      return std::vector<double>{answer_to(varied, t, points).value};
+    })[0];
   }
-  PlaceSearch search(t, answer);
+  PlaceSearch search(t, answer, points);
   if (!search.settle(file)) return {};
   return propagated(file, {answer.value},
                     [&](const PublishedFile& varied) { return std::vector<double>{search.number(varied)}; })[0];

@@ -21,6 +21,7 @@ std::vector<Interval> propagated(const PublishedFile& file, const std::vector<do
 /// The interval of a statement's number: of a searched one, the condition of its place (equal values to either side of
 /// a peak, a ratio of 1, equal values at both ends of a range) is solved anew. Absent where the place is an end of the
 /// window or an edge of the domain; but the highest value at an end of the window has one, at that end.
-Interval searched_interval(const PublishedFile& file, const PublishedTrend& statement, const Answer& answer);
+Interval searched_interval(const PublishedFile& file, const PublishedTrend& statement, const Answer& answer,
+                           SolvedPoints& points);
 
 }  // namespace wingbeat

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <optional>
 #include <utility>
 
 #include "wingbeat/cycle/domain.hpp"
+#include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/study/reproduction.hpp"
@@ -49,55 +49,63 @@ std::string shown_quantity(double x, const PublishedTrend& t) {
   return t.share_of ? percent(x) : shown(x, metric_info(t.metric).unit, is_efficiency(t.metric));
 }
 
-/// Runs the designs of a statement.
+Metrics<double> no_metrics() {
+  Metrics<double> none;
+  none.values.fill(absent);
+  return none;
+}
+
+Metrics<double> solved(const Design<double>& design, std::optional<double> frequency, Condition condition) {
+  RunOptions options;
+  options.condition = condition;
+  options.tolerance = 1e-8;
+  options.frequency = frequency;
+  options.allow_extrapolation = true;  // the domain is assessed with the result, not by the search
+  const RunResult run = run_design(design, options);
+  const bool reached = !run.search || run.search->outcome == FrequencyOutcome::reached;
+  if (run.status != FlappingStatus::flapping || !reached) return no_metrics();
+  return limits_exceeded(run.domain).any() ? no_metrics() : run.metrics;
+}
+
+/// The design with the statement's quantity at `x`; nothing where that is no vehicle.
+std::optional<Design<double>> design_at(const PublishedFile& file, const PublishedTrend& t, const std::string& name,
+                                        std::optional<double> x) {
+  Design<double> d = file.designs.at(name);
+  d.supply = {SupplyType::constant, t.voltage.value_or(d.supply.voltage), 0.0, 1.0};
+  if (!x) return d;
+  if (t.hold_stroke) {
+    const SliderCrank<double> crank = resolve(d).transmission.slider_crank;
+    d.transmission.stroke_amplitude = std::atan(crank.crank_radius / crank.hinge_offset);
+    d.transmission.hinge_offset.reset();
+  }
+  design_parameter(t.over).set(d, *x);
+  try {
+    validate(d);
+  } catch (const ParameterError&) {
+    return std::nullopt;
+  }
+  return d;
+}
+
+/// The designs of a statement.
 class Asked {
  public:
-  Asked(const PublishedFile& file, const PublishedTrend& statement) : file_(file), t_(statement) {}
+  Asked(const PublishedFile& file, const PublishedTrend& statement, SolvedPoints& points)
+      : file_(file), t_(statement), points_(points) {}
 
-  /// The design with the statement's quantity at `x`; nothing where that is no vehicle.
   std::optional<Design<double>> design(const std::string& name, std::optional<double> x) const {
-    Design<double> d = file_.designs.at(name);
-    d.supply = {SupplyType::constant, t_.voltage.value_or(d.supply.voltage), 0.0, 1.0};
-    if (!x) return d;
-    if (t_.hold_stroke) {
-      const SliderCrank<double> crank = resolve(d).transmission.slider_crank;
-      d.transmission.stroke_amplitude = std::atan(crank.crank_radius / crank.hinge_offset);
-      d.transmission.hinge_offset.reset();
-    }
-    design_parameter(t_.over).set(d, *x);
-    try {
-      validate(d);
-    } catch (const ParameterError&) {
-      return std::nullopt;
-    }
-    return d;
+    return design_at(file_, t_, name, x);
   }
 
-  /// Metrics at a held frequency, or at the supply's voltage; all absent where it does not flap or leaves the domain.
+  /// All absent where the design is no vehicle, and as SolvedPoints has it.
   Metrics<double> metrics(const std::optional<Design<double>>& d, std::optional<double> frequency,
                           Condition condition = Condition::air) const {
-    Metrics<double> none;
-    none.values.fill(absent);
-    if (!d) return none;
-    RunOptions options;
-    options.condition = condition;
-    options.tolerance = 1e-8;
-    options.frequency = frequency;
-    options.allow_extrapolation = true;  // the domain is assessed with the result, not by the search
-    const RunResult run = run_design(*d, options);
-    const bool reached = !run.search || run.search->outcome == FrequencyOutcome::reached;
-    if (run.status != FlappingStatus::flapping || !reached) return none;
-    return limits_exceeded(run.domain).any() ? none : run.metrics;
+    return d ? points_.metrics(*d, frequency, condition) : no_metrics();
   }
 
-  /// Along the statement's quantity: a frequency that is held, or a parameter of the vehicle. What was asked once is
-  /// kept: several metrics are sought along the same samples.
+  /// Along the statement's quantity: a frequency that is held, or a parameter of the vehicle.
   Metrics<double> along(const std::string& name, double x) const {
-    const auto [entry, added] = known_.try_emplace({name, x});
-    if (added) {
-      entry->second = t_.over.empty() ? metrics(design(name, std::nullopt), x) : metrics(design(name, x), std::nullopt);
-    }
-    return entry->second;
+    return t_.over.empty() ? metrics(design(name, std::nullopt), x) : metrics(design(name, x), std::nullopt);
   }
 
   /// At the statement's operating point.
@@ -118,7 +126,7 @@ class Asked {
   mutable double residual_ = absent;
   const PublishedFile& file_;
   const PublishedTrend& t_;
-  mutable std::map<std::pair<std::string, double>, Metrics<double>> known_;
+  SolvedPoints& points_;
 };
 
 Answer extreme(const Asked& ask, const PublishedTrend& t) {
@@ -343,8 +351,22 @@ Answer answer_by(const Asked& ask, const PublishedFile& file, const PublishedTre
 
 }  // namespace
 
-Answer answer_to(const PublishedFile& file, const PublishedTrend& t) {
-  const Asked ask(file, t);
+Metrics<double> SolvedPoints::metrics(const Design<double>& design, std::optional<double> frequency,
+                                      Condition condition) {
+  const std::string key = fmt::format("{} at {}, {}", write_design(design), frequency.value_or(0.0), int(condition));
+  Point* point = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    std::unique_ptr<Point>& entry = points_[key];
+    if (!entry) entry = std::make_unique<Point>();
+    point = entry.get();
+  }
+  std::call_once(point->solved, [&] { point->metrics = solved(design, frequency, condition); });
+  return point->metrics;
+}
+
+Answer answer_to(const PublishedFile& file, const PublishedTrend& t, SolvedPoints& points) {
+  const Asked ask(file, t, points);
   Answer answer = answer_by(ask, file, t);
   answer.residual = ask.residual();
   if (const std::string remark = residual_remark(answer.residual); !remark.empty()) answer.text += "; " + remark;
@@ -361,8 +383,8 @@ bool is_searched(const PublishedTrend& t) {
          t.kind == TrendKind::crossing || t.kind == TrendKind::best_range;
 }
 
-double searched_metric(const PublishedFile& file, const PublishedTrend& t, double x) {
-  const Asked ask(file, t);
+double searched_metric(const PublishedFile& file, const PublishedTrend& t, double x, SolvedPoints& points) {
+  const Asked ask(file, t, points);
   if (t.kind == TrendKind::best_range) {
     return ask.metrics(ask.design(t.design, t.over.empty() ? std::nullopt : std::optional(t.over_value)), x)[t.metric];
   }
@@ -371,12 +393,11 @@ double searched_metric(const PublishedFile& file, const PublishedTrend& t, doubl
 }
 
 std::vector<Design<double>> designs_of(const PublishedFile& file, const PublishedTrend& t) {
-  const Asked ask(file, t);
   const auto x = t.over.empty() ? std::nullopt : std::optional(t.over_value);
   std::vector<Design<double>> designs;
   for (const std::string& name : {t.design, t.relative_to.value_or("")}) {
     if (name.empty()) continue;
-    const auto design = ask.design(name, x);
+    const auto design = design_at(file, t, name, x);
     if (!design) return {};
     designs.push_back(*design);
   }

@@ -296,7 +296,16 @@ TEST_F(Endurance, AnOptimumCountsWhileTheVehicleHovers) {
 }
 
 TEST_F(Endurance, TheLongestFlightOnTwoCells) {
-  const Outcome o = run({"optimise", data + "/studies/optimise-endurance.toml", "--json", "-o", path("best.toml")});
+  // By one start of the four, from the best of fewer vehicles.
+  std::string study = read(data + "/studies/optimise-endurance.toml");
+  for (const auto& [words, by] : {std::pair<std::string, std::string>("starts = 4", "starts = 1"),
+                                  {"screen = 128", "screen = 32"},
+                                  {"../designs/friction2022-battery.toml", battery}}) {
+    ASSERT_EQ(count_of(study, words), 1U) << words;
+    study.replace(study.find(words), words.size(), by);
+  }
+  std::ofstream(path("study.toml")) << study;
+  const Outcome o = run({"optimise", path("study.toml"), "--json", "-o", path("best.toml")});
   ASSERT_EQ(o.status, 0) << o.err;
   const Json json = o.json();
   EXPECT_EQ(json["active"][0]["limit"], "lift_to_weight >= 1.2");

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <fstream>
 
 #include "drawn_texts.hpp"
 #include "program.hpp"
@@ -101,9 +102,16 @@ TEST_F(Figures, Discharges) {
 
 TEST_F(Figures, Fits) {
   look({"fit", data + "/bench/flapper.toml", "--no-profiles"});
-#ifndef WINGBEAT_SANITIZED  // ten minutes there
-  look({"fit", data + "/bench/pitch-hinge.toml", "--no-profiles"});
-#endif
+  // The bench of pitch hinges without its damping, which ends at a bound: the fit of all three takes a minute.
+  std::string bench = read(data + "/bench/pitch-hinge.toml");
+  const auto begin = bench.find("[[parameter]]\nkey = \"pitch.damping\""), end = bench.find("[[parameter]]", begin + 1);
+  ASSERT_LT(begin, end);
+  bench.erase(begin, end - begin);
+  const std::string vehicle = "../designs/pitch-hinge.toml";
+  bench.replace(bench.find(vehicle), vehicle.size(), design("pitch-hinge"));
+  std::ofstream(path("bench.toml")) << bench;
+  fs::copy(data + "/bench/pitch-hinge.csv", path("pitch-hinge.csv"));
+  look({"fit", path("bench.toml"), "--no-profiles"});
 }
 
 TEST_F(Figures, OptimaAndTolerance) {

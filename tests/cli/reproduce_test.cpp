@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstdlib>
 #include <map>
@@ -10,6 +11,7 @@
 
 #include "program.hpp"
 #include "wingbeat/files/netcdf.hpp"
+#include "wingbeat/reproduction/reproduce.hpp"
 
 namespace cli {
 namespace {
@@ -48,12 +50,18 @@ std::vector<std::string> matches(const std::string& text, const std::string& pat
   return found;
 }
 
-/// One coarse run, at its first use, serves the tests that only look at what it wrote.
+/// One coarse run, at its first use, serves the tests that only look at what it wrote. ctest makes it before, for other
+/// tests as well, and names its folder by WINGBEAT_REPRODUCED.
 class Reproduce : public Program {
  protected:
   static void TearDownTestSuite() { the_made().reset(); }
   static std::string made(const std::string& name) { return the_run().at(name); }
   static const Outcome& outcome() { return the_run().outcome; }
+  static std::set<std::string> names_in(const std::string& folder) {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder)) names.insert(entry.path().filename().string());
+    return names;
+  }
   static std::string report() { return read(made("report.html")); }
 
   struct Browsed {
@@ -80,9 +88,18 @@ class Reproduce : public Program {
 
  private:
   struct Made : Program {
-    Made() { outcome = run({"reproduce", "friction2022", "--coarse", "-o", path("made")}); }
+    Made() {
+      if (const char* before = std::getenv("WINGBEAT_REPRODUCED")) {
+        folder = before;
+        outcome = {0, read(folder + ".out"), read(folder + ".err")};
+      } else {
+        folder = path("made");
+        outcome = run({"reproduce", "friction2022", "--coarse", "-o", folder});
+      }
+    }
     void TestBody() override {}
-    std::string at(const std::string& name) const { return path("made/" + name); }
+    std::string at(const std::string& name) const { return folder + "/" + name; }
+    std::string folder;
     Outcome outcome;
   };
   static std::unique_ptr<Made>& the_made() {
@@ -168,15 +185,22 @@ TEST_F(Reproduce, TheClaimsAreThoseCommitted) {
 }
 
 TEST_F(Reproduce, TwoRunsGiveTheSameBytes) {
-  const Outcome again = run({"reproduce", "friction2022", "--coarse", "--threads", "1", "--json", "-o", path("again")});
-  ASSERT_EQ(again.status, 0) << again.err;
-  EXPECT_EQ(again.out, read(made("claims.json")));
-  std::set<std::string> first, second;
-  for (const auto& entry : fs::directory_iterator(made(""))) first.insert(entry.path().filename().string());
-  for (const auto& entry : fs::directory_iterator(path("again"))) second.insert(entry.path().filename().string());
+  // The second into the folder of the first, which may have got another file since, and by one thread.
+  const std::string again = path("again");
+  fs::copy(made(""), again);
+  std::ofstream(again + "/notes.txt") << "my notes";
+  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
+  for (const auto& entry : fs::directory_iterator(again)) fs::last_write_time(entry.path(), long_ago);
+  const Outcome o = run({"reproduce", "friction2022", "--coarse", "--threads", "1", "--json", "-o", again});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_EQ(o.out, read(made("claims.json")));
+  EXPECT_EQ(read(again + "/notes.txt"), "my notes");
+  fs::remove(again + "/notes.txt");
+  const std::set<std::string> first = names_in(made("")), second = names_in(again);
   EXPECT_EQ(first, second);
   for (const std::string& name : first) {
-    EXPECT_TRUE(read(made(name)) == read(path("again/" + name))) << name;
+    EXPECT_TRUE(read(made(name)) == read(again + "/" + name)) << name;
+    EXPECT_GT(fs::last_write_time(again + "/" + name), long_ago) << name << " was not written anew";
   }
 }
 
@@ -339,18 +363,19 @@ TEST_F(Reproduce, FoldersOfSomethingElseAreLeftAlone) {
   EXPECT_EQ(read(path("mine/report.html")), "mine");
 
   fs::create_directory(path("empty"));
-  ASSERT_EQ(run({"reproduce", "friction2022", "--coarse", "-o", path("empty")}).status, 0);
-  std::ofstream(path("empty/notes.txt")) << "my notes";
-  const std::string before = read(path("empty/figure-04.csv"));
-  ASSERT_EQ(run({"reproduce", "friction2022", "--coarse", "-o", path("empty")}).status, 0);
-  std::ofstream(path("empty/figure-04.csv")) << "changed by hand";
-  const Outcome changed = run({"reproduce", "friction2022", "--coarse", "-o", path("empty")});
+  EXPECT_NO_THROW(wingbeat::prepare_reproduction_folder(path("empty"), "friction2022"));
+  const std::string mine = path("changed");
+  fs::copy(made(""), mine);
+  std::ofstream(mine + "/notes.txt") << "my notes";
+  EXPECT_NO_THROW(wingbeat::prepare_reproduction_folder(mine, "friction2022"));
+  std::ofstream(mine + "/figure-04.csv") << "changed by hand";
+  const Outcome changed = run({"reproduce", "friction2022", "--coarse", "-o", mine});
   EXPECT_EQ(changed.status, 2);
   EXPECT_THAT(changed.err, HasSubstr("figure-04.csv: exists and was not written by wingbeat"));
-  EXPECT_EQ(read(path("empty/figure-04.csv")), "changed by hand");
-  ASSERT_EQ(run({"reproduce", "friction2022", "--coarse", "--force", "-o", path("empty")}).status, 0);
-  EXPECT_EQ(read(path("empty/notes.txt")), "my notes");
-  EXPECT_EQ(read(path("empty/figure-04.csv")), before);
+  EXPECT_EQ(read(mine + "/figure-04.csv"), "changed by hand");
+  ASSERT_EQ(run({"reproduce", "friction2022", "--coarse", "--force", "-o", mine}).status, 0);
+  EXPECT_EQ(read(mine + "/notes.txt"), "my notes");
+  EXPECT_EQ(read(mine + "/figure-04.csv"), read(made("figure-04.csv")));
 }
 
 TEST_F(Reproduce, BadInputIsRefusedInOneSentence) {
@@ -377,6 +402,7 @@ TEST_F(Reproduce, WithoutGnuplotItSaysWhatToDo) {
   const Outcome o = run({"reproduce", "friction2022", "--coarse", "-o", path("o")}, "/nowhere");
   EXPECT_EQ(o.status, 1);
   EXPECT_THAT(o.err, HasSubstr("plots need gnuplot"));
+  EXPECT_FALSE(fs::exists(path("o")));
 }
 
 }  // namespace

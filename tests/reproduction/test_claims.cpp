@@ -254,6 +254,7 @@ TEST(Claims, IntervalsAreThoseOfTheProgramsOwnTolerance) {
 TEST(Claims, IntervalsOfSearchedNumbersAreThoseOfSearchesSolvedAnew) {
   using Kind = PublishedTrend::Kind;
   std::set<Kind> seen;
+  SolvedPoints points;
   for (std::size_t n = 0; n < paper().trends.size(); ++n) {
     const PublishedTrend& t = paper().trends[n];
     const Claim& c = assessment().claims[paper().values.size() + n];
@@ -269,7 +270,7 @@ TEST(Claims, IntervalsOfSearchedNumbersAreThoseOfSearchesSolvedAnew) {
           const auto value = parameter.value(design);
           if (value && *value > 0.0) parameter.set(design, *value * (1.0 + (2 * end - 1) * u.relative_deviation));
         }
-        ends[std::size_t(end)] = answer_to(file, t).value;
+        ends[std::size_t(end)] = answer_to(file, t, points).value;
       }
       squares += std::pow(0.5 * (ends[1] - ends[0]), 2.0);
     }

@@ -30,6 +30,10 @@ struct PlotFormat {
 inline constexpr const char* plot_extensions = ".svg .pdf .png";
 /// Of sweeps and fronts also a page that shows the numbers of the design under the pointer.
 inline constexpr const char* page_extensions = ".svg .pdf .png .html";
+
+/// Throws std::runtime_error where gnuplot, which draws all figures, is not installed: to be called before computing.
+void require_gnuplot();
+
 /// By the extension; empty for any other.
 std::optional<PlotFormat> plot_format(const std::filesystem::path& file);
 

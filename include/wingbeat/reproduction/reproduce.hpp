@@ -36,7 +36,8 @@ struct ReproduceOptions {
 void prepare_reproduction_folder(const std::filesystem::path& folder, std::string_view paper, bool force = false);
 
 /// Computes and writes everything. Files of the same names from an earlier run are replaced, others in the folder stay.
-/// Throws InputError as prepare_reproduction_folder does, std::runtime_error where a file cannot be stored or drawn.
+/// Throws InputError as prepare_reproduction_folder does, std::runtime_error where a file cannot be stored or drawn;
+/// before it computes if gnuplot is missing.
 struct ReproduceResult {
   PublishedFile file;
   Assessment assessment;
