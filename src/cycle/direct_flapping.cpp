@@ -11,8 +11,8 @@ namespace {
 using Evidence = StatusEvidence::Kind;
 
 template <int N>
-SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up,
-                      solver::WorkBudget& work) {
+SteadyFlapping search_response(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up,
+                               solver::WorkBudget& work) {
   using System = DirectSystem<double, N>;
   using State = typename System::State;
   SteadyFlapping result;
@@ -83,8 +83,8 @@ SteadyFlapping search(const Vehicle<double>& vehicle, const SteadyOptions& optio
 
 SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                     const StartUp& start_up, SharedSearch& shared) {
-  return has_current_state(vehicle) ? search<3>(vehicle, options, start_up, shared.work)
-                                    : search<2>(vehicle, options, start_up, shared.work);
+  return has_current_state(vehicle) ? search_response<3>(vehicle, options, start_up, shared.work)
+                                    : search_response<2>(vehicle, options, start_up, shared.work);
 }
 
 }  // namespace wingbeat::detail

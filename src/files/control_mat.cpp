@@ -45,7 +45,7 @@ MatVariable cell_of_texts(const char* name, const std::vector<std::string>& text
   std::array<std::size_t, 2> sizes = {1, texts.size()};
   std::vector<matvar_t*> cells;
   for (const std::string& content : texts) cells.push_back(text(nullptr, content).release());
-  return made(Mat_VarCreate(name, MAT_C_CELL, MAT_T_CELL, 2, sizes.data(), cells.data(), 0));
+  return made(Mat_VarCreate(name, MAT_C_CELL, MAT_T_CELL, 2, sizes.data(), static_cast<void*>(cells.data()), 0));
 }
 MatVariable structure_of(const AllocationMap& map) {
   std::vector<const char*> fields = {"input"};

@@ -89,7 +89,7 @@ struct StatedKey {
 
 void collect(const TomlNode& table, const std::string& above, std::vector<StatedKey>& keys) {
   for (const auto& [key, node] : table.members) {
-    const std::string path = above.empty() ? key : above + "." + key;
+    const std::string path = above.empty() ? key : fmt::format("{}.{}", above, key);
     const bool is_section = node.kind == TomlNode::Kind::table && !node.in_line;
     if (!is_section) keys.push_back({path, &node, table.in_line});
     collect(node, path, keys);
@@ -276,7 +276,9 @@ std::string edited_design(std::string_view original, const Design<double>& desig
   try {
     const std::string text = Editor(original, parse_design(original, "", {}, tables), design).edit();
     if (agree(keys_of(parse_design(text, "", {}, tables)), keys_of(design))) return text;
-  } catch (const InputError&) {}
+  } catch (const InputError&) {
+    // Not a file to edit: written anew.
+  }
   return write_design(design);
 }
 
@@ -288,7 +290,10 @@ std::string edited_design(const fs::path& original, const fs::path& output, cons
     return edited_design(from == to ? text : moved(text, from, to), design,
                          [&](const std::string& name) { return read_text_file(to / name); });
   } catch (const InputError&) {
-  } catch (const fs::filesystem_error&) {}
+    // No file to edit: written anew.
+  } catch (const fs::filesystem_error&) {
+    // Neither.
+  }
   return write_design(design);
 }
 

@@ -102,7 +102,9 @@ class Reader {
   void attempt(const Do& act) {
     try {
       errors_.attempt(act);
-    } catch (const Reported&) {}
+    } catch (const Reported&) {
+      // Nothing to add.
+    }
   }
 
   /// True if a misspelt or misplaced key, which is reported already, was to be this one.

@@ -79,8 +79,8 @@ MotorCandidate candidate(const std::string& model, const Number& number, double 
   else motor.design.motor.gear_ratio.reset();
   motor.design.motor.gear_inertia = 0.0;
   motor.design.motor.gear_damping = 0.0;
-  if (rest) motor.design.mass = *rest;
-  if (weighed) motor.design.masses.motor = *mass;
+  if (rest) motor.design.mass = rest;
+  if (weighed) motor.design.masses.motor = mass;
   try {
     validate(motor.design);
   } catch (const ParameterError& error) {

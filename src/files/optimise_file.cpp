@@ -106,7 +106,7 @@ class OptimiseReader : public detail::StudySections {
 
   void read_objective(OptimiseStudy& study, const Design<double>& design) {
     const TomlNode& node = need(root_, "", "objective", "a section [objective] with minimise or maximise");
-    section(node, "objective");
+    must_be_section(node, "objective");
     known_keys(node, "objective", {"minimise", "maximise", "starts", "seed", "screen"});
     const TomlNode *low = node.find("minimise"), *high = node.find("maximise");
     if (bool(low) == bool(high)) refuse(node, "objective", "give one of minimise and maximise");
@@ -154,7 +154,7 @@ class OptimiseReader : public detail::StudySections {
     const TomlNode* search = root_.find("search");
     EvolutionOptions& evolution = file.evolution;
     if (search) {
-      section(*search, "search");
+      must_be_section(*search, "search");
       known_keys(*search, "search", {"method", "population", "generations", "screen", "seed", "designs"});
       if (const TomlNode* method = search->find("method")) {
         evolution.method = one_of<EvolutionMethod>(*method, "search.method");
@@ -312,7 +312,7 @@ class OptimiseReader : public detail::StudySections {
   // ---- [motors]
 
   void read_motors(const TomlNode& node, OptimiseFile& file) {
-    section(node, "motors");
+    must_be_section(node, "motors");
     known_keys(node, "motors", {"catalogue", "gear_ratio", "mass_without"});
     const TomlNode& name = need(node, "motors", "catalogue", "the name of a CSV file");
     const fs::path path = folder_ / text_of(name, "motors.catalogue", "the name of a CSV file");

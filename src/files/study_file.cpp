@@ -266,7 +266,7 @@ class StudyReader : public detail::StudySections {
   // ---- [samples]
 
   void read_samples(const TomlNode& node) {
-    section(node, "samples");
+    must_be_section(node, "samples");
     known_keys(node, "samples", {"method", "count", "seed", "range", "file"});
     const TomlNode& method = need(node, "samples", "method", "\"latin-hypercube\", \"sobol\" or \"csv\"");
     const std::string name = one_of(method, "samples.method", {"latin-hypercube", "sobol", "csv"});

@@ -36,7 +36,7 @@ StudySections::StudySections(std::string name, std::string_view text, std::span<
   known_keys(root_, "", with({"study", "set"}, sections));
   attempt([&] {
     study_ = &need(root_, "", "study", "a section [study] with the name of a vehicle file");
-    section(*study_, "study");
+    must_be_section(*study_, "study");
     known_keys(*study_, "study",
                with({"vehicle", "title", "tolerance", "metrics", "hold", "allow_extrapolation"}, keys));
   });
@@ -179,7 +179,7 @@ void StudySections::read_hold() {
 
 void StudySections::flatten(const TomlNode& table, const std::string& path) {
   for (const auto& [key, node] : table.members) {
-    const std::string full = path.empty() ? key : path + "." + key;
+    const std::string full = path.empty() ? key : fmt::format("{}.{}", path, key);
     const bool known = find_parameter<double>(full) != nullptr;
     const bool has_place = attempt([&, &n = node] {
       if (!known && !is_section(full)) refuse(n, "set." + one_line(full), unknown_key_message(full));

@@ -43,7 +43,7 @@ class Digester {
 
   void add(const SweepColumns& columns) {
     for (std::size_t row = 0; row < columns.status.size(); ++row) {
-      ++digest_.designs[std::size_t(columns.status[row])];
+      ++digest_.designs[static_cast<unsigned char>(columns.status[row])];
       digest_.recomputed += columns.recomputed[row] != 0;
       digest_.outside += columns.domain[row] != 0;
       for (std::size_t k = 0; k < digest_.beyond.size(); ++k) digest_.beyond[k] += columns.domain[row] >> k & 1;

@@ -61,7 +61,7 @@ class ToleranceReader : public detail::StudySections {
     ToleranceStudy& study = *study_result_;
     const TomlNode* node = root_.find("samples");
     if (!node) return;
-    section(*node, "samples");
+    must_be_section(*node, "samples");
     known_keys(*node, "samples", {"method", "count", "seed", "indices", "resamples"});
     if (const TomlNode* method = node->find("method")) {
       study.method = one_of<ToleranceMethod>(*method, "samples.method");
@@ -220,7 +220,7 @@ class ToleranceReader : public detail::StudySections {
 
   /// The parameters of a fit with their covariance, as `wingbeat fit -o` writes them.
   void read_fit(const TomlNode& node) {
-    section(node, "fit");
+    must_be_section(node, "fit");
     known_keys(node, "fit", {"covariance"});
     const TomlNode& name = need(node, "fit", "covariance", "the .covariance.toml of a fit");
     const fs::path path = folder_ / text_of(name, "fit.covariance", "the .covariance.toml of a fit");

@@ -188,7 +188,7 @@ class Flattener {
     for (const auto& [key, node] : table.members) {
       const std::string name = segment(key);
       const Origin origin = base_.overridden ? base_ : Origin{base_.file, node.line, node.column, false};
-      enter(node, path.empty() ? name : path + "." + name, origin);
+      enter(node, path.empty() ? name : fmt::format("{}.{}", path, name), origin);
     }
   }
 
@@ -272,14 +272,18 @@ TomlNode override_value(std::string_view text, const Origin& origin) {
   if (text.find_first_of("\r\n") == std::string_view::npos) {
     try {
       return std::move(parse_toml(fmt::format("value = {}", text), origin).members.front().node);
-    } catch (const InputError&) {}
+    } catch (const InputError&) {
+      // Perhaps a bare text.
+    }
     try {
       parse_toml(fmt::format("# {}", text), origin);  // a comment too may hold no control characters
       TomlNode bare;
       bare.kind = TomlNode::Kind::text;
       bare.text = text;
       return bare;
-    } catch (const InputError&) {}
+    } catch (const InputError&) {
+      // Refused below.
+    }
   }
   origin.refuse("", "neither a TOML value nor one line of plain UTF-8 text");
 }

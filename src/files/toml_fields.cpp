@@ -95,7 +95,8 @@ std::string TomlFields::choice(std::string_view key, std::span<const std::string
 std::optional<TomlFields> TomlFields::table(std::string_view key) const {
   const TomlNode* node = table_.find(key);
   if (!node) return std::nullopt;
-  return TomlFields(file(), name_of(key), reader_.section(*node, name_of(key)));
+  reader_.must_be_section(*node, name_of(key));
+  return TomlFields(file(), name_of(key), *node);
 }
 
 std::vector<TomlFields> TomlFields::tables(std::string_view key) const {

@@ -68,9 +68,8 @@ std::string TomlReader::one_of(const TomlNode& node, const std::string& key,
   wrong(node, key, expected);
 }
 
-const TomlNode& TomlReader::section(const TomlNode& node, const std::string& key) const {
+void TomlReader::must_be_section(const TomlNode& node, const std::string& key) const {
   if (node.kind != Kind::table) wrong(node, key, fmt::format("a section [{}]", key));
-  return node;
 }
 
 std::span<const TomlNode> TomlReader::sections(const TomlNode& node, const std::string& key) const {

@@ -56,8 +56,8 @@ class TomlReader {
     return *from_name<E>(one_of(node, key, names));
   }
 
-  /// The node, which is the section [key].
-  const TomlNode& section(const TomlNode& node, const std::string& key) const;
+  /// Refuses a node that is not the section [key].
+  void must_be_section(const TomlNode& node, const std::string& key) const;
   /// The sections [[key]] that the node holds.
   std::span<const TomlNode> sections(const TomlNode& node, const std::string& key) const;
 

@@ -33,7 +33,8 @@ void write_zip(const std::filesystem::path& file, const std::vector<std::pair<st
       if (source) zip_source_free(source);
       fail(zip_get_error(archive.get()));
     }
-    zip_file_set_dostime(archive.get(), zip_uint64_t(place), 0, 0x21, 0);  // 1 January 1980, the first a ZIP knows
+    // 1 January 1980, the first day that a ZIP knows.
+    if (zip_file_set_dostime(archive.get(), zip_uint64_t(place), 0, 0x21, 0) != 0) fail(zip_get_error(archive.get()));
   }
   if (zip_close(archive.get()) != 0) fail(zip_get_error(archive.get()));
   (void)archive.release();

@@ -75,7 +75,8 @@ class ArchiveReader {
   template <class T>
   void operator()(T& x) {
     if constexpr (PlainValue<T>) {
-      std::memcpy(&x, take(sizeof x).data(), sizeof x);
+      const std::string_view bytes = take(sizeof x);
+      std::memcpy(&x, bytes.data(), bytes.size());
     } else {
       T::members(x, [this](auto&... member) {
         ((*this)(member), ...);

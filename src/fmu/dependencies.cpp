@@ -66,13 +66,12 @@ std::vector<std::size_t> known_on_side(const Design<double>& design, VariableKin
     const std::size_t sum = number - layout.first_sum();
     if (number == 0 || (indices.pitching && number == indices.pitch)) k.state(number == 0 ? 1 : indices.pitch + 1);
     else if (indices.inductive && number == indices.current) k.state(1), k.state(indices.current), k.voltages(sine);
-    else if (number < indices.count) mechanics();
+    else if (number < indices.count || sum == 5) mechanics();
     else if (number < layout.first_sum()) k.input(InputId::frequency);
     else if (sum == 0) lift();
     else if (sum <= 2) current();
     else if (sum == 3) k.state(1);
     else if (sum == 4) electrical_power();
-    else if (sum == 5) mechanics();
     else aerodynamics();
   } else if (kind == VariableKind::output) {
     switch (OutputId(number)) {

@@ -161,17 +161,17 @@ class Writer {
     for (const std::string& unit : seen) {
       const BaseUnit base = base_of(unit);
       constexpr const char* names[] = {"kg", "m", "s", "A", "K", "rad"};
-      std::string exponents;
+      std::string element = "<Unit" + attribute("name", unit) + "><BaseUnit";
       for (std::size_t k = 0; k < 6; ++k) {
-        if (base.exponents[k] != 0) exponents += attribute(names[k], std::to_string(base.exponents[k]));
+        if (base.exponents[k] != 0) element += attribute(names[k], std::to_string(base.exponents[k]));
       }
-      std::string shown;
+      element += "/>";
       for (const DisplayUnit& d : display_units) {
         if (unit != d.unit) continue;
-        shown += "<DisplayUnit" + attribute("name", d.name) + attribute("factor", number(d.factor)) +
-                 (d.offset != 0.0 ? attribute("offset", number(d.offset)) : std::string()) + "/>";
+        element += "<DisplayUnit" + attribute("name", d.name) + attribute("factor", number(d.factor)) +
+                   (d.offset != 0.0 ? attribute("offset", number(d.offset)) : std::string()) + "/>";
       }
-      line(2, "<Unit" + attribute("name", unit) + "><BaseUnit" + exponents + "/>" + shown + "</Unit>");
+      line(2, element + "</Unit>");
     }
     line(1, "</UnitDefinitions>");
   }

@@ -38,7 +38,7 @@ void put_toml(const Json& table, const std::string& path, std::string& text) {
     if (!is_table(value) && !is_tables(value)) text += fmt::format("{} = {}\n", key, value_in_toml(value));
   }
   for (const auto& [key, value] : table.items()) {
-    const std::string name = path.empty() ? key : path + "." + key;
+    const std::string name = path.empty() ? key : fmt::format("{}.{}", path, key);
     if (is_table(value)) {
       text += fmt::format("\n[{}]\n", name);
       put_toml(value, name, text);

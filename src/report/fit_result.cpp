@@ -153,8 +153,7 @@ const Description<FitResult>& fit_result_description() {
           .always("degrees_of_freedom", "", "", &R::degrees_of_freedom, schema::of_type("integer"))
           .always("p_value", "1", "chance of residuals as large under the stated deviations", &R::p_value)
           .always("aicc", "1", "corrected Akaike information criterion", &R::aicc)
-          .part("starts", "starts by where they ended", fit_starts_description(),
-                [](const R& r) -> const R& { return r; })
+          .part("starts", "starts by where they ended", fit_starts_description(), std::identity{})
           .parts("parameters", "fitted", fitted_parameter_description(), &R::parameters)
           .always("covariance", "", "of the parameters in their order, SI; null: not determined", &R::covariance)
           .always("correlation", "1", "", &R::correlation)

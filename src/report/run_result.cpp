@@ -63,7 +63,7 @@ const Description<TransientResult>& start_up_description() {
           .always("averaged_cycles", "", "cycles behind the metrics", &R::averaged_cycles)
           .always("cycle_scatter", "1", "largest deviation of their durations from the mean one", &R::cycle_scatter)
           .always("current_ripple_a", "A", "ripple of the current of a pwm supply, peak to peak", &R::current_ripple)
-          .part("events", "number of events by kind", start_up_events(), [](const R& r) -> const R& { return r; });
+          .part("events", "number of events by kind", start_up_events(), std::identity{});
   return description;
 }
 

@@ -60,7 +60,7 @@ const Description<ScoreFound>& counts_description() {
         .always("reproduced", "", "met in both formulations", [](const R& r) { return r.score.reproduced; })
         .always("depends_on_the_formulation", "", "met in one of them", [](const R& r) { return r.score.depends; })
         .always("not_reproduced", "", "met in neither", [](const R& r) { return r.score.not_reproduced; })
-        .part("met", "by formulation", met, [](const R& r) -> const R& { return r; });
+        .part("met", "by formulation", met, std::identity{});
   }();
   return description;
 }

@@ -241,7 +241,9 @@ SweepRelease::~SweepRelease() {
   for (int r = 1; r < ranks_->count(); ++r) {
     try {
       ranks_->send(r, tag_stop);
-    } catch (const std::exception&) {}
+    } catch (const std::exception&) {
+      // A rank out of reach cannot be told.
+    }
   }
 }
 

@@ -79,7 +79,7 @@ const Description<SweepFound>& sweep_description() {
             "computing_time_s", "s", "", [](const R& r) { return r.result.progress.seconds; }, schema::any_number)
         .always("recomputed", "", "designs that the batched solver left to the scalar one",
                 [](const R& r) { return r.result.digest.recomputed; })
-        .part("status", "numbers of designs", by_status, [](const R& r) -> const R& { return r; })
+        .part("status", "numbers of designs", by_status, std::identity{})
         .part("max_lift_mean", "the design of most mean lift; null where none flaps",
               best_description(Metric::lift_mean), best(&SweepDigest::lift))
         .part("max_efficiency_system", "the design of most system efficiency; null where none flaps",

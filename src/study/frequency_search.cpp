@@ -118,7 +118,8 @@ class Search {
     const bool slow = width() > 0.5 * bracket_;
     bracket_ = width();
     const double middle = 0.5 * (low_->voltage + high_->voltage);
-    if (slow && (stuck_ = !stuck_)) return middle;
+    if (slow) stuck_ = !stuck_;
+    if (slow && stuck_) return middle;
     const VoltageTrial& from = target_ - low_->frequency < high_->frequency - target_ ? *low_ : *high_;
     const double guess = secant(from, 4.0);
     return guess > low_->voltage && guess < high_->voltage ? guess : middle;

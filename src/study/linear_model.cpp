@@ -41,7 +41,7 @@ ContinuousModel continuous_of(const CycleMap& map) {
   const Eigen::MatrixXd scaled = size.cwiseInverse().asDiagonal() * map.a * size.asDiagonal();
   const Eigen::EigenSolver<Eigen::MatrixXd> eigen(scaled);
   const Eigen::MatrixXcd modes = eigen.eigenvectors();
-  const Eigen::VectorXcd multipliers = eigen.eigenvalues();
+  const Eigen::VectorXcd& multipliers = eigen.eigenvalues();
   const Eigen::MatrixXcd drive =
       modes.fullPivLu().solve((size.cwiseInverse().asDiagonal() * map.b).cast<Complex>().eval());
   const Eigen::MatrixXcd seen = (map.c * size.asDiagonal()).cast<Complex>() * modes;

@@ -31,7 +31,7 @@ void take_electrical_constants(const MotorDatasheet& s, const MotorFit& fit, Mot
       result.checks.push_back({d.name, d.value, p, p / d.value - 1.0});
     }
   } else {
-    if (fit.has_resistance) result.armature_resistance = {*s.resistance, s.deviation * *s.resistance, "the sheet's"};
+    if (fit.has_resistance) result.armature_resistance = {s.resistance, s.deviation * *s.resistance, "the sheet's"};
     if (!fit.has_resistance) {
       result.missing.push_back(
           "armature resistance: give resistance, stall_current with voltage, or points of the "
@@ -133,7 +133,7 @@ void take_inertia(const MotorDatasheet& s, const MotorFit& fit, MotorIdentificat
 void take_inductance(const MotorDatasheet& s, const MotorFit& fit, std::optional<double> frequency,
                      MotorIdentification& result) {
   if (s.inductance) {
-    result.armature_inductance = {*s.inductance, 0.0, "the sheet's"};
+    result.armature_inductance = {s.inductance, 0.0, "the sheet's"};
   } else {
     result.armature_inductance = {0.0, 0.0, "assumed"};
     std::string remark = "no inductance given: assumed 0";

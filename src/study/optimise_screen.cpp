@@ -57,7 +57,7 @@ std::vector<Vector> screened(const OptimiseProblem& problem, const StartUp& star
   };
   std::vector<Rank> ranks;
   for (std::size_t n = 0; n < study.screen; ++n) {
-    ++counts.status[std::size_t(columns.status[n])];
+    ++counts.status[static_cast<unsigned char>(columns.status[n])];
     if (columns.status[n] != 0) continue;
     const bool counts_here = columns.counts(n, study.allow_extrapolation);
     counts.outside += !counts_here;

@@ -112,7 +112,7 @@ Reproduction reproduce(const SpringPair& pair, const ReproductionOptions& option
   r.supply_fixed_stroke.axis = r.supply_fixed_hinge.axis;
 
   std::vector<std::function<void()>> tasks;
-  const auto task_along = [&](TrendSet& set, std::size_t curve, bool frequency, auto place) {
+  const auto task_along = [&](TrendSet& set, std::size_t curve, bool frequency, const auto& place) {
     tasks.push_back([&set, curve, frequency, place] { run_along(set.curves[curve], set.axis, frequency, place); });
   };
   for (const Formulation formulation : {rod_force, virtual_work}) {

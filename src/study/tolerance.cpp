@@ -239,7 +239,7 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
   ToleranceResult result;
   result.vehicles = columns.status.size();
   std::array<std::uint64_t, sweep_status_count> counts{};
-  for (std::uint64_t n = 0; n < base; ++n) ++counts[std::size_t(columns.status[n])];
+  for (std::uint64_t n = 0; n < base; ++n) ++counts[static_cast<unsigned char>(columns.status[n])];
   for (std::size_t s = 0; s < counts.size(); ++s) result.status[s] = probability_of(counts[s], base);
 
   std::uint64_t outside = 0;

@@ -37,7 +37,7 @@ TrendPeak highest_along(const AlongTheWay& value, double from, double to, int sa
   if (best < 0) return {none, none, false};
   TrendPeak peak{place(from, to, best, samples), values[std::size_t(best)], false};
   const bool left = best > 0 && std::isfinite(values[std::size_t(best - 1)]);
-  const bool right = best + 1 < samples && std::isfinite(values[std::size_t(best + 1)]);
+  const bool right = best + 1 < samples && std::isfinite(values[std::size_t(best) + 1]);
   const double low = left ? place(from, to, best - 1, samples) : peak.argument;
   const double high = right ? place(from, to, best + 1, samples) : peak.argument;
   const auto [argument, negative] = min_between([&](double x) { return -value(x); }, low, high);

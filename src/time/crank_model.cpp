@@ -250,7 +250,8 @@ double CrankModel::next_switch() const {
   // Even switches turn on, odd ones off; number 0 is the switching on at t = 0.
   const std::int64_t next = now.switches + 1;
   const bool off = (next & 1) != 0;
-  return (double((next - (off ? 1 : 0)) / 2) + (off ? supply.duty : 0.0)) / supply.frequency;
+  const std::int64_t whole_periods = (next - (off ? 1 : 0)) / 2;
+  return (double(whole_periods) + (off ? supply.duty : 0.0)) / supply.frequency;
 }
 
 void CrankModel::choose_force_branch() {

@@ -354,7 +354,7 @@ template <bool every_law = true, Scalar S>
   const S speed = stroke * stroke_velocity;
   AeroLoads<S> loads;
   S alpha = S(pi / 2.0) - w.pitch_coefficient * speed;
-  S at_stop = pitching;
+  S at_stop = S(pitching);
   if constexpr (ScalarTraits<S>::reads_tables) alpha = select(pitching >= S(0.0), alpha, w.angle_of_attack_min);
   S read_at = alpha;
   if constexpr (!ScalarTraits<S>::reads_tables && every_law) {

@@ -50,7 +50,7 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
   try {
     const std::string own_name = name ? name : "";
     const fmi2CallbackLogger logger = callbacks ? callbacks->logger : nullptr;
-    const fmi2ComponentEnvironment environment = callbacks ? callbacks->componentEnvironment : nullptr;
+    void* const environment = callbacks ? callbacks->componentEnvironment : nullptr;
     const auto log = [=](StatusCode code, const char* category, const std::string& message) {
       if (logger) logger(environment, own_name.c_str(), as2(code), category, "%s", message.c_str());
     };
