@@ -104,7 +104,8 @@ class Interrupts(unittest.TestCase):
         self.ends(lambda: reference().solve_columns({"motor.inertia": inertia}, tolerance=1e-12, frequency=22.0))
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "kept.nc"
-            self.ends(lambda: reference().sweep({"supply.voltage": voltages}, tolerance=1e-10, output=file))
+            many = np.linspace(2, 5, 100_000)  # the first call is the one interrupted
+            self.ends(lambda: reference().sweep({"supply.voltage": many}, tolerance=1e-10, output=file))
             self.assertFalse(file.exists())
         self.ends(lambda: reference().sweep({"supply.voltage": voltages}, tolerance=1e-10))
 
