@@ -118,6 +118,11 @@ fs::path find_vehicle(const fs::path& folder, const std::string& name) {
   return ours ? fs::canonical(shipped_data() / "designs" / (stem + ".toml"), error) : beside;
 }
 
+bool is_there(const fs::path& file) {
+  std::error_code cannot_be;
+  return fs::exists(file, cannot_be);
+}
+
 std::string input_name(const fs::path& file) { return file == "-" ? "standard input" : file.string(); }
 
 std::string written_name(const fs::path& file) { return input_name(file == "-" ? file : file.filename()); }

@@ -316,7 +316,7 @@ class OptimiseReader : public detail::StudySections {
     known_keys(node, "motors", {"catalogue", "gear_ratio", "mass_without"});
     const TomlNode& name = need(node, "motors", "catalogue", "the name of a CSV file");
     const fs::path path = folder_ / text_of(name, "motors.catalogue", "the name of a CSV file");
-    if (!fs::exists(path)) refuse(name, "motors.catalogue", fmt::format("there is no file {}", path.string()));
+    if (!is_there(path)) refuse(name, "motors.catalogue", fmt::format("there is no file {}", path.string()));
     const TomlNode& ratio = need(node, "motors", "gear_ratio", "the ratio of the gearbox behind motors that have none");
     const double gear = quantity(ratio, "motors.gear_ratio", "1");
     if (!(gear > 0.0)) refuse(ratio, "motors.gear_ratio", "must be > 0");

@@ -345,7 +345,7 @@ Study read_study(const fs::path& file, std::span<const std::string> overrides) {
   const fs::path folder = file.parent_path();
   reader.attempt([&] {
     const fs::path vehicle = find_vehicle(folder, reader.vehicle_file());
-    if (!fs::exists(vehicle)) {
+    if (!is_there(vehicle)) {
       reader.refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
     }
     input.design = reader.vehicle_in(vehicle);
@@ -355,7 +355,7 @@ Study read_study(const fs::path& file, std::span<const std::string> overrides) {
     const auto table = reader.table_file();
     if (!table) return;
     const fs::path path = folder / *table;
-    if (!fs::exists(path)) reader.refuse_file("samples", "file", fmt::format("there is no file {}", path.string()));
+    if (!is_there(path)) reader.refuse_file("samples", "file", fmt::format("there is no file {}", path.string()));
     input.table_name = path.string();
     input.table = detail::read_design_table_file(path);
   });

@@ -239,7 +239,7 @@ std::string StudySections::read_title() const {
 
 Design<double> StudySections::read_vehicle(const std::filesystem::path& folder) const {
   const std::filesystem::path vehicle = find_vehicle(folder, vehicle_file());
-  if (!std::filesystem::exists(vehicle)) {
+  if (!is_there(vehicle)) {
     refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
   }
   return vehicle_in(vehicle);

@@ -224,7 +224,7 @@ class ToleranceReader : public detail::StudySections {
     known_keys(node, "fit", {"covariance"});
     const TomlNode& name = need(node, "fit", "covariance", "the .covariance.toml of a fit");
     const fs::path path = folder_ / text_of(name, "fit.covariance", "the .covariance.toml of a fit");
-    if (!fs::exists(path)) refuse(name, "fit.covariance", fmt::format("there is no file {}", path.string()));
+    if (!is_there(path)) refuse(name, "fit.covariance", fmt::format("there is no file {}", path.string()));
     ToleranceStudy& study = *study_result_;
     const std::string file = path.string();
     const TomlNode tree = parse_toml_tree(read_text_file(path), file);

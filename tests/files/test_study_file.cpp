@@ -330,6 +330,11 @@ TEST_F(StudyFile, VehiclesAreSoughtBesideTheStudy) {
   EXPECT_THAT(said(radius_axis), HasSubstr("s.toml:1:1: study: missing; expected a section [study]"));
   EXPECT_THAT(said("[study]\nvehicle = \"none.toml\"\n" + radius_axis),
               HasSubstr("s.toml:2:1: study.vehicle: there is no file "));
+  const std::string too_long(300, 'x');
+  EXPECT_THAT(said("[study]\nvehicle = \"" + too_long + ".toml\"\n" + radius_axis),
+              HasSubstr("s.toml:2:1: study.vehicle: there is no file "));
+  EXPECT_THAT(said("[study]\nvehicle = \"friction2022\"\n[samples]\nmethod = \"csv\"\nfile = \"" + too_long + "\"\n"),
+              HasSubstr("samples.file: there is no file "));
   write("bad.toml", "[motor]\ninertja = 1\n");
   EXPECT_THAT(said("[study]\nvehicle = \"bad.toml\"\n" + radius_axis),
               HasSubstr("bad.toml:2:1: motor.inertja: unknown key"));

@@ -19,6 +19,9 @@ std::filesystem::path find_input(const std::string& argument, InputKind kind);
 /// The vehicle file that a file in `folder` names: beside it, or one that comes with the program. It need not exist.
 std::filesystem::path find_vehicle(const std::filesystem::path& folder, const std::string& name);
 
+/// Whether there is a file of that name; not where no file can have it, such as one that is too long.
+bool is_there(const std::filesystem::path& file);
+
 /// The folder of the data that come with the program, found from where the program is; empty where there is none.
 std::filesystem::path shipped_data();
 
