@@ -6,7 +6,7 @@
 
 namespace wingbeat {
 
-// Those of orbit_gradient_*.cpp.
+// Compiled with the gradients in orbit_gradient_*.cpp.
 extern template bool CycleGradient<CrankSystem<double, 1>>::run();
 extern template bool CycleGradient<CrankSystem<double, 2>>::run();
 extern template bool CycleGradient<DirectSystem<double, 2>>::run();

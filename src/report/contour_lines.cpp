@@ -9,7 +9,8 @@
 namespace wingbeat {
 namespace {
 
-std::size_t place(const ContourGrid& g, int i, int j) { return std::size_t(i) * g.y.size() + std::size_t(j); }
+/// Where the value at g.x[i], g.y[j] stands in g.z.
+std::size_t index_of(const ContourGrid& g, int i, int j) { return std::size_t(i) * g.y.size() + std::size_t(j); }
 
 }  // namespace
 
@@ -17,7 +18,7 @@ std::vector<Loop> boundaries(const ContourGrid& g, double level) {
   const int nx = int(g.x.size()), ny = int(g.y.size());
   // A frame around the grid, of no width, that lies outside the region.
   const auto inside = [&](int i, int j) {
-    return i >= 0 && j >= 0 && i < nx && j < ny && g.z[place(g, i, j)] >= level;
+    return i >= 0 && j >= 0 && i < nx && j < ny && g.z[index_of(g, i, j)] >= level;
   };
   const auto between = [](double a, double b, double t, bool logarithmic) {
     return logarithmic ? a * std::pow(b / a, t) : a + t * (b - a);
@@ -26,7 +27,7 @@ std::vector<Loop> boundaries(const ContourGrid& g, double level) {
     return ContourPoint{g.x[std::size_t(std::clamp(i, 0, nx - 1))], g.y[std::size_t(std::clamp(j, 0, ny - 1))]};
   };
   const auto value = [&](int i, int j) {
-    return i >= 0 && j >= 0 && i < nx && j < ny ? g.z[place(g, i, j)] : -std::numeric_limits<double>::infinity();
+    return i >= 0 && j >= 0 && i < nx && j < ny ? g.z[index_of(g, i, j)] : -std::numeric_limits<double>::infinity();
   };
   struct Edge {
     int i, j;  ///< its lower node
@@ -110,7 +111,7 @@ void extend(ContourGrid& g) {
     const int i = int(front[next]) / ny, j = int(front[next]) % ny;
     for (const auto& [di, dj] : {std::pair{-1, 0}, {1, 0}, {0, -1}, {0, 1}}) {
       if (i + di < 0 || j + dj < 0 || i + di >= nx || j + dj >= ny) continue;
-      const std::size_t n = place(g, i + di, j + dj);
+      const std::size_t n = index_of(g, i + di, j + dj);
       if (std::isfinite(g.z[n])) continue;
       g.z[n] = g.z[front[next]];
       front.push_back(n);
@@ -125,9 +126,9 @@ void smooth(ContourGrid& g) {
     for (int i = 0; i < nx; ++i) {
       for (int j = 0; j < ny; ++j) {
         const auto value_at = [&](int s) {
-          return z[place(g, std::clamp(i + s * di, 0, nx - 1), std::clamp(j + s * dj, 0, ny - 1))];
+          return z[index_of(g, std::clamp(i + s * di, 0, nx - 1), std::clamp(j + s * dj, 0, ny - 1))];
         };
-        g.z[place(g, i, j)] = 0.25 * value_at(-1) + 0.5 * value_at(0) + 0.25 * value_at(1);
+        g.z[index_of(g, i, j)] = 0.25 * value_at(-1) + 0.5 * value_at(0) + 0.25 * value_at(1);
       }
     }
   };
