@@ -25,22 +25,14 @@ const CycleSignal armature_current{"current", "A", 0.0};
 const CycleSignal pitch_angle{"pitch_angle", "rad", 0.0};
 const CycleSignal pitch_velocity{"pitch_velocity", "rad/s", 0.0};
 
-// The states of each system, without the current, which comes last.
-template <int N>
-std::vector<CycleSignal> mechanical_states(const CrankSystem<double, N>&) {
-  return {crank_speed};
-}
-template <int N>
-std::vector<CycleSignal> mechanical_states(const DirectSystem<double, N>&) {
-  return {stroke_angle, flapping_velocity};
-}
-template <int N>
-std::vector<CycleSignal> mechanical_states(const PitchCrankSystem<double, N>&) {
-  return {crank_speed, pitch_angle, pitch_velocity};
-}
-template <int N>
-std::vector<CycleSignal> mechanical_states(const PitchDirectSystem<double, N>&) {
-  return {stroke_angle, flapping_velocity, pitch_angle, pitch_velocity};
+template <class System>
+std::vector<CycleSignal> states_of() {
+  std::vector<CycleSignal> states;
+  if (System::turns) states = {crank_speed};
+  else states = {stroke_angle, flapping_velocity};
+  if (System::inductive) states.push_back(armature_current);
+  if (System::on_hinges) states.insert(states.end(), {pitch_angle, pitch_velocity});
+  return states;
 }
 
 /// The inputs, and the vehicle that they are parameters of, as gradient_seed() numbers them.
@@ -79,8 +71,7 @@ CycleMap linearised(const RecordedCycle<System>& recorded, const Vehicle<double>
   Gradient cycle(recorded, seeded);
   cycle.run();  // whether the orbit itself can be differentiated does not matter to its map
 
-  map.states = mechanical_states(recorded.system);
-  if (int(map.states.size()) < N) map.states.push_back(armature_current);
+  map.states = states_of<System>();
   for (int n = 0; n < N; ++n) map.states[std::size_t(n)].value = recorded.cycle.steps.front().y[std::size_t(n)];
 
   const auto total = [&](Integral which) -> const W& { return cycle.totals()[std::size_t(which)]; };

@@ -32,8 +32,7 @@ struct LoadsSystem : System {
   using Quadrature = std::array<Real, first_load + body_integral_count>;
   static constexpr std::size_t wave_half = std::tuple_size_v<typename System::Signs>;  ///< the sign that nodes flip
   using Signs = std::array<Real, wave_half + 1>;
-  static constexpr bool pitching = requires { System::pitch; };
-  static constexpr bool waved = !System::has_rod;
+  static constexpr bool waved = !System::turns;
 
   DriveWave<Real> wave;
 
@@ -56,74 +55,55 @@ struct LoadsSystem : System {
     }
   }
 
-  Signs start_signs(const State& y) const
-    requires waved
-  {
+  Signs start_signs(const State& y) const {
     Signs signs;
     signs.fill(Real(1.0));
-    take(System::start_signs(y), signs);
-    // What the shaft's own rule sees at phase 0 is the sine, not the wave.
-    if constexpr (pitching) {
-      if (pitch_stops::rests_at_stop(*this, y)) pitch_stops::hold_or_leave(*this, Real(0.0), y, signs);
-    }
+    take(driven(Real(0.0)).start_signs_at(phase(Real(0.0)), y), signs);
     return signs;
   }
 
   void event_transition(std::size_t k, const Real& x, State& y, Signs& signs) const
-    requires(waved && !pitching)
+    requires(waved && !System::on_hinges)
   {
     auto own = own_signs(signs);
     driven(x).event_transition(k, phase(x), y, own);
     take(own, signs);
   }
   void event_transition(std::size_t k, const Real& x, State& y, Signs& signs, Quadrature* totals) const
-    requires pitching
+    requires System::on_hinges
   {
-    if (!this->jumps(k)) {
-      signs[k] = -signs[k];
-      return;
-    }
+    auto own = own_signs(signs);
+    typename System::Quadrature own_gained{};
+    driven(x).event_transition(k, phase(x), y, own, &own_gained);
+    take(own, signs);
     Quadrature gained{};
-    pitch_stops::event_transition(*this, x, y, signs, &gained);
-    add_impulses(gained, Real(System::stroke_angle(x, y)), totals);
+    std::copy(own_gained.begin(), own_gained.end(), gained.begin());
+    set_impulses(gained, Real(System::stroke_angle(x, y)));
+    add(gained, totals);
   }
 
   template <bool quadratures>
   void reset_map(const Real& x, State& y, const Signs& from, const Signs& to, Quadrature* totals) const
-    requires(waved && !pitching)
-  {
-    typename System::Quadrature gained{};
-    driven(x).template reset_map<quadratures>(phase(x), y, own_signs(from), own_signs(to), &gained);
-    if (!quadratures || !totals) return;
-    for (std::size_t q = 0; q < gained.size(); ++q) (*totals)[q] = (*totals)[q] + gained[q];
-  }
-  template <bool quadratures>
-  void reset_map(const Real& x, State& y, const Signs& from, const Signs& to, Quadrature* totals) const
-    requires pitching
+    requires(waved || System::on_hinges)
   {
     if constexpr (!quadratures) {
-      pitch_stops::reset_map<false>(*this, x, y, from, to, totals);
+      System::template reset_map_of<false>(*this, x, y, from, to, totals);
     } else {
       Quadrature gained{};
-      Real beta = System::stroke_angle(x, y);
-      if (value_of(from[System::impacts]) != value_of(to[System::impacts])) {
+      if (System::on_hinges && meets_stop(from, to)) {
         // Where a neighbouring solution meets the stop.
         const auto before = rates<false>(x, y, from);
         const Real room = pitch_stops::side<LoadsSystem>(y) * this->vehicle.pitch.hinge.stop - y[System::pitch];
         const Real late = room / before.dy[System::pitch];
         State there = y;
         for (std::size_t n = 0; n < y.size(); ++n) there[n] = y[n] + before.dy[n] * late;
-        beta = System::stroke_angle(Real(x + late), there);
+        System::template reset_map_of<true>(*this, x, y, from, to, &gained);
+        set_impulses(gained, Real(System::stroke_angle(Real(x + late), there)));
+      } else {
+        System::template reset_map_of<true>(*this, x, y, from, to, &gained);
       }
-      pitch_stops::reset_map<true>(*this, x, y, from, to, &gained);
-      add_impulses(gained, beta, totals);
+      add(gained, totals);
     }
-  }
-
-  auto pitch_motion(const Real& x, const State& y, const Signs& signs) const
-    requires pitching
-  {
-    return driven(x).pitch_motion(phase(x), y, own_signs(signs));
   }
 
   template <bool quadratures, class At>
@@ -176,13 +156,19 @@ struct LoadsSystem : System {
     std::copy(own.begin(), own.end(), signs.begin());
   }
 
-  /// Adds what was gained at an impact, at the stroke angle beta: its lift acts there, M_aero has no impulse.
-  static void add_impulses(Quadrature& gained, const Real& beta, Quadrature* totals) {
+  static bool meets_stop([[maybe_unused]] const Signs& from, [[maybe_unused]] const Signs& to) {
+    if constexpr (System::on_hinges) return pitch_stops::has_impact<System>(own_signs(from), own_signs(to));
+    else return false;
+  }
+  /// Of what was gained at an impact, at the stroke angle beta: the lift acts there, M_aero has no impulse.
+  static void set_impulses(Quadrature& gained, const Real& beta) {
     using std::cos;
     using std::sin;
     const Real& lift = gained[std::size_t(Integral::lift)];
     gained[index_of(BodyIntegral::lift_sideways)] = lift * cos(beta);
     gained[index_of(BodyIntegral::lift_forward)] = lift * sin(beta);
+  }
+  static void add(const Quadrature& gained, Quadrature* totals) {
     if (!totals) return;
     for (std::size_t q = 0; q < gained.size(); ++q) (*totals)[q] = (*totals)[q] + gained[q];
   }

@@ -53,8 +53,10 @@ class PitchingCrankSearch {
 
  private:
   static State state(double speed, double psi, double pitch_velocity, double current) {
-    State y{speed, psi, pitch_velocity};
-    if constexpr (N == 4) y[3] = current;
+    State y{speed};
+    if constexpr (System::inductive) y[System::current_state] = current;
+    y[System::pitch] = psi;
+    y[System::pitch + 1] = pitch_velocity;
     return y;
   }
 

@@ -32,8 +32,10 @@ class PitchingSearch {
 
  private:
   static State state(double stroke, double speed, double psi, double pitch_velocity, double current) {
-    State y{stroke, speed, psi, pitch_velocity};
-    if constexpr (N == 5) y[4] = current;
+    State y{stroke, speed};
+    if constexpr (System::inductive) y[System::current_state] = current;
+    y[System::pitch] = psi;
+    y[System::pitch + 1] = pitch_velocity;
     return y;
   }
 

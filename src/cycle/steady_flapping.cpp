@@ -15,11 +15,17 @@ using detail::OrbitSearch;
 using Evidence = StatusEvidence::Kind;
 
 template <int N>
+CrankSystem<double, N> crank_system(const Vehicle<double>& vehicle) {
+  typename CrankSystem<double, N>::State typical{no_load_speed(vehicle)};
+  if constexpr (N == 2) typical[1] = vehicle.voltage / circuit_resistance(vehicle);
+  return {vehicle, typical, 1e-4 * no_load_speed(vehicle)};
+}
+
+template <int N>
 class CrankSearch : public OrbitSearch<CrankSystem<double, N>> {
  public:
   CrankSearch(const Vehicle<double>& vehicle, const SteadyOptions& options, solver::WorkBudget& work)
-      : OrbitSearch<CrankSystem<double, N>>(
-            {vehicle, 1e-4 * no_load_speed(vehicle), vehicle.voltage / circuit_resistance(vehicle)}, options, work) {}
+      : OrbitSearch<CrankSystem<double, N>>(crank_system<N>(vehicle), options, work) {}
 
   /// One search from crank speed omega at crank angle zero, with the quasi-steady current of `earlier_speed`.
   bool from(double omega, double earlier_speed, double expected_multiplier = 1.0) {

@@ -79,16 +79,16 @@ WingLoadSlopes slopes_of(const RecordedCycle<System>& recorded) {
   using W = typename Gradient::W;
   constexpr int N = Gradient::N;
   constexpr int first_input = gradient_first_slot + Gradient::shift;
-  constexpr auto inputs = Eigen::Index(System::has_rod ? 1 : drive_input_count);
+  constexpr auto inputs = Eigen::Index(System::turns ? 1 : drive_input_count);
 
   RecordedCycle<Loaded> cycle{Loaded{recorded.system, {}}, detail::with_loads(recorded.cycle)};
-  if constexpr (!System::has_rod) {
+  if constexpr (!System::turns) {
     for (const double node : nodes_of({})) detail::end_step_at(node, cycle);
   }
   Vehicle<GradientJet> seeded = cast<GradientJet>(recorded.system.vehicle);
   seeded.voltage = gradient_seed(seeded.voltage.a, 0);
   Gradient gradient(cycle, seeded);
-  if constexpr (!System::has_rod) {
+  if constexpr (!System::turns) {
     gradient.system().wave = {W(0.0, first_input + int(DriveInput::bias)), W(0.0, first_input + int(DriveInput::split)),
                               W(0.0, first_input + int(DriveInput::cosine_split))};
   }
@@ -161,7 +161,7 @@ std::optional<solver::Iterate<Loaded>> orbit_near(const Loaded& system, const ty
 template <class System>
 std::optional<LoadsUnderWave> loads_of_wave(const RecordedCycle<System>& recorded, const DriveWave<double>& wave,
                                             const std::vector<double>& near) {
-  if constexpr (System::has_rod) {
+  if constexpr (System::turns) {
     return std::nullopt;
   } else {
     using Loaded = LoadsSystem<System>;

@@ -75,8 +75,7 @@ class ArchiveReader {
   template <class T>
   void operator()(T& x) {
     if constexpr (PlainValue<T>) {
-      const std::string_view bytes = take(sizeof x);
-      std::memcpy(&x, bytes.data(), bytes.size());
+      std::memcpy(&x, take(sizeof x).data(), sizeof x);
     } else {
       T::members(x, [this](auto&... member) {
         ((*this)(member), ...);

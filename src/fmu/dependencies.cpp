@@ -27,7 +27,7 @@ std::vector<std::size_t> known_on_side(const Design<double>& design, VariableKin
                                        std::size_t side) {
   Knowns k{StateLayout(resolve(design)), side, {}};
   const StateLayout& layout = k.layout;
-  const StateIndices& indices = layout.indices;
+  const UnknownIndices& indices = layout.indices;
   const bool sine = layout.has_phase;
   const bool resists = design.supply.type == SupplyType::battery;
   const auto all_states = [&] {
@@ -45,7 +45,7 @@ std::vector<std::size_t> known_on_side(const Design<double>& design, VariableKin
     k.voltages(sine);
   };
   const auto velocity = [&] {  // of the stroke
-    if (indices.crank) k.state(0);
+    if (indices.rotates) k.state(0);
     k.state(1);
   };
   // What the air does without the accelerations.

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
 
 #include "wingbeat/core/jet.hpp"
 #include "wingbeat/vehicle/motion.hpp"
@@ -16,62 +15,27 @@ constexpr double indicator_rest = 1e-10, indicator_due = 1e-9;
 /// [Hz]
 constexpr double highest_frequency = 1e9;
 
-AnyModel model_of(const Design<double>& design, const Vehicle<double>& vehicle) {
-  if (!drive_of(vehicle).alternating) {
-    // A pwm supply whose duty is an input may switch although its parameter is 0 or 1.
-    Supply<double> supply = design.supply;
-    if (supply.type == SupplyType::pwm) {
-      supply.duty = 0.5;
-      if (supply.frequency > highest_frequency) {
-        throw ParameterError("supply.frequency", "must be <= 1e9 Hz of an FMU");
-      }
-    }
-    return MeasuredModel<detail::CrankModel>(vehicle, supply);
-  }
-  if (vehicle.drive_frequency > highest_frequency) {
+MeasuredModel model_of(const Design<double>& design, const Vehicle<double>& vehicle) {
+  // A pwm supply whose duty is an input may switch although its parameter is 0 or 1.
+  Supply<double> supply = design.supply;
+  if (supply.type == SupplyType::pwm) supply.duty = 0.5;
+  if (supply.frequency > highest_frequency || vehicle.drive_frequency > highest_frequency) {
     throw ParameterError("supply.frequency", "must be <= 1e9 Hz of an FMU");
   }
-  if (pitches(vehicle)) return MeasuredModel<detail::PitchDirectModel>(vehicle);
-  return MeasuredModel<detail::DirectModel>(vehicle);
+  return {vehicle, supply};
 }
-
-template <class Model>
-constexpr bool is_crank = std::is_same_v<Model, MeasuredModel<detail::CrankModel>>;
 
 /// Number of the model's indicator of an event; behind the last one where the model knows it by its time.
-template <class Model>
-std::size_t indicator_of(Watched event) {
+std::size_t indicator_of(Watched event, bool direct) {
   switch (event) {
     case Watched::standstill:
-      if constexpr (is_crank<Model>) return Model::standstill;
-      break;
-    case Watched::jam:
-      if constexpr (is_crank<Model>) return Model::jam;
-      break;
-    case Watched::stop:
-      if constexpr (requires { Model::stop; }) return Model::stop;
-      break;
-    case Watched::cycle_end:
-      if constexpr (is_crank<Model>) return Model::cycle_end;
-      break;
-    case Watched::slip_end:
-      if constexpr (requires { Model::motion_ends; }) return Model::motion_ends;
-      break;
-    case Watched::rest:
-      if constexpr (is_crank<Model>) return Model::rest;
-      break;
+    case Watched::slip_end: return MeasuredModel::standstill;
+    case Watched::jam: return MeasuredModel::jam;
+    case Watched::stop: return MeasuredModel::stop;
+    case Watched::cycle_end: return direct ? MeasuredModel::indicator_count : MeasuredModel::cycle_end;
+    case Watched::rest: return MeasuredModel::rest;
   }
-  return Model::indicator_count;
-}
-
-void start_at(MeasuredModel<detail::CrankModel>& model, const Settings& s) {
-  model.start(s.angle, s.speed, s.current, s.pitch_angle, s.pitch_velocity);
-}
-void start_at(MeasuredModel<detail::DirectModel>& model, const Settings& s) {
-  model.start(s.angle, s.speed, s.current);
-}
-void start_at(MeasuredModel<detail::PitchDirectModel>& model, const Settings& s) {
-  model.start({s.angle, s.speed, s.pitch_angle, s.pitch_velocity, s.current});
+  return MeasuredModel::indicator_count;
 }
 
 Inputs inputs_of(const Design<double>& design, const Vehicle<double>& vehicle) {
@@ -100,11 +64,11 @@ void DriveInTime::build(const Design<double>& design, const Settings& settings) 
                                                           ? "must stay > 0 H: the current is a state"
                                                           : "must stay 0 H: the current is no state");
   }
-  if (layout.indices.crank != layout_.indices.crank || layout.indices.pitching != layout_.indices.pitching ||
+  if (layout.indices.rotates != layout_.indices.rotates || layout.indices.pitching != layout_.indices.pitching ||
       watched_events(vehicle) != watched_) {
     throw ParameterError("vehicle", "must keep the states and events that it was exported with");
   }
-  AnyModel next = model_of(design, vehicle);
+  MeasuredModel next = model_of(design, vehicle);
   stated_inputs_ = inputs_of(design, vehicle);
   for (std::size_t k = 0; double* const input = member_of(inputs_, k); ++k) {
     if (!(inputs_set_ >> k & 1u)) *input = *member_of(stated_inputs_, k);
@@ -114,21 +78,16 @@ void DriveInTime::build(const Design<double>& design, const Settings& settings) 
 }
 
 void DriveInTime::start(const Settings& settings) {
-  std::visit(
-      [&](auto& model) {
-        using M = std::remove_cvref_t<decltype(model)>;
-        start_at(model, settings);
-        model.scale_to(std::abs(stated_inputs_.voltage));
-        model.judge_rest_by_typical();
-        if constexpr (is_crank<M>) {
-          if (model.supply.type != SupplyType::pwm) model.command = [this](double) { return inputs_.voltage; };
-        } else {
-          model.command = [this](double t) {
-            return inputs_.voltage * std::sin(std::get<M>(model_).phase_at(t)) + inputs_.voltage_offset;
-          };
-        }
-      },
-      model_);
+  model_.start({settings.angle, settings.speed, settings.current, settings.pitch_angle, settings.pitch_velocity});
+  model_.scale_to(std::abs(stated_inputs_.voltage));
+  model_.judge_rest_by_typical();
+  if (model_.direct) {
+    model_.command = [this](double t) {
+      return inputs_.voltage * std::sin(model_.phase_at(t)) + inputs_.voltage_offset;
+    };
+  } else if (model_.supply.type != SupplyType::pwm) {
+    model_.command = [this](double) { return inputs_.voltage; };
+  }
   scaled_to_ = 0.0;
   apply_inputs();
 }
@@ -143,14 +102,10 @@ void DriveInTime::change(const Design<double>& design, const Settings& settings)
 
 void DriveInTime::initialise(const Design<double>& design, const Settings& settings, double time) {
   build(design, settings);
-  std::visit(
-      [&](auto& model) {
-        model.now.t = time;
-        model.catch_up_with_supply();
-        if constexpr (requires { model.now.i; }) model.now.i = model.inductive ? settings.current : model.now.i;
-        model.start_cycles();
-      },
-      model_);
+  model_.now.t = time;
+  model_.catch_up_with_supply();
+  if (model_.indices.inductive) model_.now.moving.current = settings.current;
+  model_.start_cycles();
 }
 
 std::optional<double> DriveInTime::input(std::size_t index) const {
@@ -177,111 +132,84 @@ double DriveInTime::voltage_scale() const {
 /// What inputs are to the model.
 void DriveInTime::apply_inputs() {
   const double scale = voltage_scale();
-  std::visit(
-      [&](auto& model) {
-        using M = std::remove_cvref_t<decltype(model)>;
-        model.vehicle.load_torque = inputs_.load_torque;
-        if constexpr (is_crank<M>) {
-          if (model.supply.type == SupplyType::pwm) {
-            model.supply.voltage = inputs_.voltage;
-            model.supply.duty = inputs_.duty;
-            model.now.switched_voltage = model.now.switches % 2 == 0 ? inputs_.voltage : 0.0;
-          }
-        } else if (inputs_.frequency != model.vehicle.drive_frequency) {
-          model.set_frequency(inputs_.frequency);
-          scaled_to_ = 0.0;
-        }
-        if (scale != scaled_to_ && scale > 0.0) model.scale_to(scaled_to_ = scale);
-      },
-      model_);
+  model_.vehicle.load_torque = inputs_.load_torque;
+  if (model_.supply.type == SupplyType::pwm) {
+    model_.supply.voltage = inputs_.voltage;
+    model_.supply.duty = inputs_.duty;
+    model_.now.switched_voltage = model_.now.switches % 2 == 0 ? inputs_.voltage : 0.0;
+  } else if (model_.direct && inputs_.frequency != model_.vehicle.drive_frequency) {
+    model_.set_frequency(inputs_.frequency);
+    scaled_to_ = 0.0;
+  }
+  if (scale != scaled_to_ && scale > 0.0) model_.scale_to(scaled_to_ = scale);
 }
 
-const Vehicle<double>& DriveInTime::vehicle() const {
-  return std::visit([](const auto& model) -> const Vehicle<double>& { return model.vehicle; }, model_);
-}
-
-double DriveInTime::time() const {
-  return std::visit([](const auto& model) { return model.now.t; }, model_);
-}
+const Vehicle<double>& DriveInTime::vehicle() const { return model_.vehicle; }
+double DriveInTime::time() const { return model_.now.t; }
 
 void DriveInTime::set_time(double t) {
   // The phase of a direct drive's supply is a state: it does not follow the time by itself.
-  std::visit([&](auto& model) { model.now.t = model.means.phase_time = t; }, model_);
+  model_.now.t = model_.means.phase_time = t;
 }
 
 std::vector<double> DriveInTime::states() const {
-  return std::visit(
-      [&](const auto& model) {
-        using M = std::remove_cvref_t<decltype(model)>;
-        double y[max_unknowns + detail::quadrature_count] = {};
-        model.unknowns(y);
-        std::vector<double> states(y, y + layout_.indices.count);
-        if constexpr (!is_crank<M>) states.push_back(model.phase_at(model.now.t));
-        for (const ExposedSum& sum : exposed_sums) {
-          states.push_back(y[layout_.indices.count + detail::quadrature_of(sum.integral)]);
-        }
-        return states;
-      },
-      model_);
+  double y[max_unknowns + detail::quadrature_count] = {};
+  model_.unknowns(y);
+  std::vector<double> states(y, y + layout_.indices.count);
+  if (layout_.has_phase) states.push_back(model_.phase_at(model_.now.t));
+  for (const ExposedSum& sum : exposed_sums) {
+    states.push_back(y[layout_.indices.count + detail::quadrature_of(sum.integral)]);
+  }
+  return states;
 }
 
 void DriveInTime::set_states(const double* given) {
-  std::visit(
-      [&](auto& model) {
-        using M = std::remove_cvref_t<decltype(model)>;
-        double y[max_unknowns + detail::quadrature_count] = {};
-        model.unknowns(y);
-        std::copy_n(given, layout_.indices.count, y);
-        for (std::size_t k = 0; k < exposed_sum_count; ++k) {
-          y[layout_.indices.count + detail::quadrature_of(exposed_sums[k].integral)] = given[layout_.first_sum() + k];
-        }
-        if constexpr (!is_crank<M>) {
-          model.means.phase = given[layout_.phase()];
-          model.means.phase_time = model.now.t;
-        }
-        model.set(model.now.t, y);
-      },
-      model_);
+  double y[max_unknowns + detail::quadrature_count] = {};
+  model_.unknowns(y);
+  std::copy_n(given, layout_.indices.count, y);
+  for (std::size_t k = 0; k < exposed_sum_count; ++k) {
+    y[layout_.indices.count + detail::quadrature_of(exposed_sums[k].integral)] = given[layout_.first_sum() + k];
+  }
+  if (layout_.has_phase) {
+    model_.means.phase = given[layout_.phase()];
+    model_.means.phase_time = model_.now.t;
+  }
+  model_.set(model_.now.t, y);
 }
 
 template <Scalar S>
 Dynamics<S> DriveInTime::now(const std::vector<Direction>& knowns) const {
-  return std::visit(
-      [&](const auto& model) {
-        using M = std::remove_cvref_t<decltype(model)>;
-        Vehicle<S> vehicle = cast<S>(model.vehicle);
-        double numbers[max_unknowns + detail::quadrature_count] = {};
-        model.unknowns(numbers);
-        std::array<S, max_unknowns> y;
-        for (std::size_t k = 0; k < max_unknowns; ++k) y[k] = S(k < layout_.indices.count ? numbers[k] : 0.0);
-        S v_s(model.voltage(model.now.t));
-        if constexpr (ScalarTraits<S>::differentiates) {
-          double by_voltage = 1.0, by_phase = 0.0;
-          if constexpr (!is_crank<M>) {
-            const double phase = model.phase_at(model.now.t);
-            by_voltage = std::sin(phase);
-            by_phase = inputs_.voltage * std::cos(phase);
-          } else if (model.supply.type == SupplyType::pwm) {
-            by_voltage = model.now.switches % 2 == 0 ? 1.0 : 0.0;
-          }
-          for (const Direction& known : knowns) {
-            if (known.kind == VariableKind::state) {
-              if (known.index < layout_.indices.count) y[known.index].v[0] += known.change;
-              else if (layout_.has_phase && known.index == layout_.phase()) v_s.v[0] += known.change * by_phase;
-              continue;
-            }
-            switch (InputId(known.index)) {
-              case InputId::voltage: v_s.v[0] += known.change * by_voltage; break;
-              case InputId::voltage_offset: v_s.v[0] += known.change; break;
-              case InputId::load_torque: vehicle.load_torque.v[0] += known.change; break;
-              case InputId::duty:
-              case InputId::frequency: break;
-            }
-          }
-        }
-        return evaluate<S>(vehicle, model.mode(), y.data(), v_s);
-      },
-      model_);
+  Vehicle<S> vehicle = cast<S>(model_.vehicle);
+  double numbers[max_unknowns + detail::quadrature_count] = {};
+  model_.unknowns(numbers);
+  std::array<S, max_unknowns> y;
+  for (std::size_t k = 0; k < max_unknowns; ++k) y[k] = S(k < layout_.indices.count ? numbers[k] : 0.0);
+  S v_s(model_.voltage(model_.now.t));
+  if constexpr (ScalarTraits<S>::differentiates) {
+    double by_voltage = 1.0, by_phase = 0.0;
+    if (layout_.has_phase) {
+      const double phase = model_.phase_at(model_.now.t);
+      by_voltage = std::sin(phase);
+      by_phase = inputs_.voltage * std::cos(phase);
+    } else if (model_.supply.type == SupplyType::pwm) {
+      by_voltage = model_.now.switches % 2 == 0 ? 1.0 : 0.0;
+    }
+    for (const Direction& known : knowns) {
+      if (known.kind == VariableKind::state) {
+        if (known.index < layout_.indices.count) y[known.index].v[0] += known.change;
+        else if (layout_.has_phase && known.index == layout_.phase()) v_s.v[0] += known.change * by_phase;
+        continue;
+      }
+      switch (InputId(known.index)) {
+        case InputId::voltage: v_s.v[0] += known.change * by_voltage; break;
+        case InputId::voltage_offset: v_s.v[0] += known.change; break;
+        case InputId::load_torque: vehicle.load_torque.v[0] += known.change; break;
+        case InputId::duty:
+        case InputId::frequency: break;
+      }
+    }
+  }
+  return evaluate<S>(vehicle, cast<S>(model_.mode()), y.data(), v_s);
 }
 template Dynamics<double> DriveInTime::now(const std::vector<Direction>&) const;
 template Dynamics<Jet<1>> DriveInTime::now(const std::vector<Direction>&) const;
@@ -291,12 +219,12 @@ S DriveInTime::output(OutputId which, const Dynamics<S>& dynamics) const {
   const Motion<S>& m = dynamics.motion;
   const Vehicle<double>& v = vehicle();
   switch (which) {
-    case OutputId::crank_angle: return dynamics.angle;
-    case OutputId::crank_speed: return dynamics.shaft_speed;
+    case OutputId::crank_angle: return dynamics.moving.angle;
+    case OutputId::crank_speed: return dynamics.moving.speed;
     case OutputId::stroke_angle: return dynamics.stroke_angle;
     case OutputId::flapping_velocity: return m.stroke_velocity;
-    case OutputId::pitch_angle: return dynamics.pitch_angle;
-    case OutputId::pitch_velocity: return dynamics.pitch_velocity;
+    case OutputId::pitch_angle: return dynamics.moving.pitch_angle;
+    case OutputId::pitch_velocity: return dynamics.moving.pitch_velocity;
     case OutputId::current: return m.current;
     case OutputId::terminal_voltage: return m.voltage;
     case OutputId::lift: return m.aero.lift;
@@ -305,14 +233,14 @@ S DriveInTime::output(OutputId which, const Dynamics<S>& dynamics) const {
     case OutputId::motor_torque: return m.motor_torque;
     case OutputId::friction_torque: return m.friction_torque;
     case OutputId::power_electrical: return m.voltage * m.current;
-    case OutputId::power_motor: return m.motor_torque * dynamics.shaft_speed;
-    case OutputId::power_friction: return m.friction_torque * dynamics.shaft_speed;
+    case OutputId::power_motor: return m.motor_torque * dynamics.moving.speed;
+    case OutputId::power_friction: return m.friction_torque * dynamics.moving.speed;
     case OutputId::power_aerodynamic: return m.aero.power;
     case OutputId::power_copper: return v.motor.armature_resistance * m.current * m.current;
-    case OutputId::power_viscous: return v.motor.viscous_damping * dynamics.shaft_speed * dynamics.shaft_speed;
+    case OutputId::power_viscous: return v.motor.viscous_damping * dynamics.moving.speed * dynamics.moving.speed;
     case OutputId::power_motor_friction:
-      return v.motor.friction_torque * sign_of(dynamics.shaft_speed) * dynamics.shaft_speed;
-    case OutputId::power_load: return dynamics.load_torque * dynamics.shaft_speed;
+      return v.motor.friction_torque * sign_of(dynamics.moving.speed) * dynamics.moving.speed;
+    case OutputId::power_load: return dynamics.load_torque * dynamics.moving.speed;
     case OutputId::roll_moment:
     case OutputId::pitch_moment:
     case OutputId::yaw_moment:
@@ -332,137 +260,101 @@ std::vector<double> DriveInTime::rates() const {
 }
 
 std::vector<double> DriveInTime::nominals() const {
-  return std::visit(
-      [&](const auto& model) {
-        const auto typical = model.typical();
-        std::vector<double> sizes;
-        for (std::size_t k = 0; k < layout_.indices.count; ++k) sizes.push_back(typical[k] > 0.0 ? typical[k] : 1.0);
-        if (layout_.has_phase) sizes.push_back(1.0);
-        // Of the sums what a tenth of a second gives, about.
-        const double current = std::max(std::abs(inputs_.voltage), 1e-3) / circuit_resistance(model.vehicle);
-        const double power = std::max(std::abs(inputs_.voltage), 1e-3) * current;
-        for (const double rate : {1e-2, current, current * current, square(typical[1]), power, power, power}) {
-          sizes.push_back(0.1 * rate);
-        }
-        return sizes;
-      },
-      model_);
+  const auto typical = model_.typical();
+  std::vector<double> sizes;
+  for (std::size_t k = 0; k < layout_.indices.count; ++k) sizes.push_back(typical[k] > 0.0 ? typical[k] : 1.0);
+  if (layout_.has_phase) sizes.push_back(1.0);
+  // Of the sums what a tenth of a second gives, about.
+  const double current = std::max(std::abs(inputs_.voltage), 1e-3) / circuit_resistance(model_.vehicle);
+  const double power = std::max(std::abs(inputs_.voltage), 1e-3) * current;
+  for (const double rate : {1e-2, current, current * current, square(typical[1]), power, power, power}) {
+    sizes.push_back(0.1 * rate);
+  }
+  return sizes;
 }
 
 double DriveInTime::mean(MeanId which) const {
-  return std::visit(
-      [&](const auto& model) {
-        const CycleMeans& means = model.means;
-        if (!model.has_means()) return 0.0;
-        const auto mean = [&](Integral integral) { return means.mean[detail::quadrature_of(integral)]; };
-        switch (which) {
-          case MeanId::frequency: return 1.0 / means.period;
-          case MeanId::lift: return mean(Integral::lift);
-          case MeanId::current: return mean(Integral::current);
-          case MeanId::power_electrical: return mean(Integral::electrical_work);
-          case MeanId::power_friction: return mean(Integral::friction_work);
-          case MeanId::power_aerodynamic: return mean(Integral::aero_work);
-          case MeanId::power_copper: return model.vehicle.motor.armature_resistance * mean(Integral::current_square);
-          case MeanId::last: break;
-        }
-        return 0.0;
-      },
-      model_);
+  const CycleMeans& means = model_.means;
+  if (!model_.has_means()) return 0.0;
+  const auto mean = [&](Integral integral) { return means.mean[detail::quadrature_of(integral)]; };
+  switch (which) {
+    case MeanId::frequency: return 1.0 / means.period;
+    case MeanId::lift: return mean(Integral::lift);
+    case MeanId::current: return mean(Integral::current);
+    case MeanId::power_electrical: return mean(Integral::electrical_work);
+    case MeanId::power_friction: return mean(Integral::friction_work);
+    case MeanId::power_aerodynamic: return mean(Integral::aero_work);
+    case MeanId::power_copper: return model_.vehicle.motor.armature_resistance * mean(Integral::current_square);
+    case MeanId::last: break;
+  }
+  return 0.0;
 }
 
 Status DriveInTime::status() const {
-  return std::visit(
-      [](const auto& model) {
-        if (model.ended()) return Status::jammed;
-        if (model.stands()) return Status::standing;
-        return model.means.whole ? Status::flapping : Status::starting;
-      },
-      model_);
+  if (model_.ended()) return Status::jammed;
+  if (model_.stands()) return Status::standing;
+  return model_.means.whole ? Status::flapping : Status::starting;
 }
 
-std::int64_t DriveInTime::cycles() const {
-  return std::visit([](const auto& model) { return model.means.cycles; }, model_);
-}
+std::int64_t DriveInTime::cycles() const { return model_.means.cycles; }
 
 std::vector<double> DriveInTime::indicators() const {
-  return std::visit(
-      [&](const auto& model) {
-        using M = std::remove_cvref_t<decltype(model)>;
-        double y[max_unknowns + detail::quadrature_count] = {};
-        model.unknowns(y);
-        const auto values = model.indicators(model.now.t, y);
-        const auto directions = model.directions();
-        std::vector<double> watched;
-        for (const Watched event : watched_) {
-          const std::size_t k = indicator_of<M>(event);
-          if (k < M::indicator_count) {
-            watched.push_back(-double(directions[k]) * values[k] + indicator_rest);
-          } else if constexpr (!is_crank<M>) {
-            const CycleMeans& means = model.means;
-            watched.push_back(1.0 - (model.phase_at(model.now.t) - means.mark) / two_pi + indicator_rest);
-          }
-        }
-        return watched;
-      },
-      model_);
+  double y[max_unknowns + detail::quadrature_count] = {};
+  model_.unknowns(y);
+  const auto values = model_.indicators(model_.now.t, y);
+  const auto directions = model_.directions();
+  std::vector<double> watched;
+  for (const Watched event : watched_) {
+    const std::size_t k = indicator_of(event, model_.direct);
+    if (k < MeasuredModel::indicator_count) {
+      watched.push_back(-double(directions[k]) * values[k] + indicator_rest);
+    } else {
+      watched.push_back(1.0 - (model_.phase_at(model_.now.t) - model_.means.mark) / two_pi + indicator_rest);
+    }
+  }
+  return watched;
 }
 
 void DriveInTime::handle_events() {
   const std::vector<double> due = indicators();
-  std::visit(
-      [&](auto& model) {
-        using M = std::remove_cvref_t<decltype(model)>;
-        if (model.ended()) return;
-        for (std::size_t n = 0; n < watched_.size(); ++n) {
-          if (!(due[n] <= indicator_due)) continue;
-          const std::size_t k = indicator_of<M>(watched_[n]);
-          if (k < M::indicator_count) model.handle(k);
-          else model.switch_supply();
-        }
-        model.follow_supply();
-        model.begin_piece();
-      },
-      model_);
+  if (model_.ended()) return;
+  for (std::size_t n = 0; n < watched_.size(); ++n) {
+    if (!(due[n] <= indicator_due)) continue;
+    const std::size_t k = indicator_of(watched_[n], model_.direct);
+    if (k < MeasuredModel::indicator_count) model_.handle(k);
+    else model_.switch_supply();
+  }
+  model_.follow_supply();
+  model_.begin_piece();
 }
 
 double DriveInTime::next_event() const {
-  return std::visit(
-      [](const auto& model) {
-        using M = std::remove_cvref_t<decltype(model)>;
-        if constexpr (is_crank<M>) return model.next_switch();
-        else return infinity;  // the end of a cycle follows from a state, the phase
-      },
-      model_);
+  // The end of a direct drive's cycle follows from a state, the phase.
+  return model_.direct ? infinity : model_.next_switch();
 }
 
-bool DriveInTime::ended() const {
-  return std::visit([](const auto& model) { return model.ended(); }, model_);
-}
+bool DriveInTime::ended() const { return model_.ended(); }
 
 StepResult DriveInTime::step_to(double until, double tolerance, std::int64_t work) {
   apply_inputs();
-  return std::visit(
-      [&](auto& model) {
-        const auto before = model.now;
-        const CycleMeans means = model.means;
-        model.work_left = work;
-        StepResult result = StepResult::failed;
-        try {
-          switch (detail::step_to(model, until, tolerance)) {
-            case detail::StepOutcome::reached: result = StepResult::reached; break;
-            case detail::StepOutcome::ended: result = StepResult::jammed; break;
-            default: break;
-          }
-        } catch (const WorkSpent&) {
-          result = StepResult::too_much;
-        }
-        if (result != StepResult::reached && result != StepResult::jammed) {
-          model.now = before;
-          model.means = means;
-        }
-        return result;
-      },
-      model_);
+  const auto before = model_.now;
+  const CycleMeans means = model_.means;
+  model_.work_left = work;
+  StepResult result = StepResult::failed;
+  try {
+    switch (detail::step_to(model_, until, tolerance)) {
+      case detail::StepOutcome::reached: result = StepResult::reached; break;
+      case detail::StepOutcome::ended: result = StepResult::jammed; break;
+      default: break;
+    }
+  } catch (const WorkSpent&) {
+    result = StepResult::too_much;
+  }
+  if (result != StepResult::reached && result != StepResult::jammed) {
+    model_.now = before;
+    model_.means = means;
+  }
+  return result;
 }
 
 }  // namespace wingbeat::fmu

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <optional>
-#include <variant>
 #include <vector>
 
 #include "fmu/archive.hpp"
@@ -11,9 +10,6 @@
 #include "fmu/variables.hpp"
 
 namespace wingbeat::fmu {
-
-using AnyModel = std::variant<MeasuredModel<detail::CrankModel>, MeasuredModel<detail::DirectModel>,
-                              MeasuredModel<detail::PitchDirectModel>>;
 
 /// In the order of InputId.
 struct Inputs {
@@ -128,7 +124,7 @@ class DriveInTime {
   Inputs inputs_, stated_inputs_;
   unsigned inputs_set_ = 0;  ///< bits, by index
   StateLayout layout_;
-  AnyModel model_;
+  MeasuredModel model_;
   std::vector<Watched> watched_;
   double scaled_to_ = 0.0;  ///< [V]
 };

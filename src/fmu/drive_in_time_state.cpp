@@ -7,36 +7,24 @@ namespace wingbeat::fmu {
 
 DriveInTime::Moving DriveInTime::motion() const {
   Moving moving;
-  std::visit(
-      [&](const auto& model) {
-        model.now.each(model.now, [&](const auto& x) { moving.numbers.push_back(double(x)); });
-        moving.means = model.means;
-      },
-      model_);
+  model_.now.each(model_.now, [&](const auto& x) { moving.numbers.push_back(double(x)); });
+  moving.means = model_.means;
   return moving;
 }
 
 void DriveInTime::set_motion(const Moving& to) {
-  std::visit(
-      [&](auto& model) {
-        auto next = to.numbers.begin();
-        model.now.each(model.now, [&](auto& x) { x = std::remove_reference_t<decltype(x)>(*next++); });
-        model.means = to.means;
-      },
-      model_);
+  auto next = to.numbers.begin();
+  model_.now.each(model_.now, [&](auto& x) { x = std::remove_reference_t<decltype(x)>(*next++); });
+  model_.means = to.means;
   scaled_to_ = 0.0;
   apply_inputs();
 }
 
 void DriveInTime::save(ArchiveWriter& out) const {
   out(inputs_), out(inputs_set_), out(scaled_to_);
-  std::visit(
-      [&](const auto& model) {
-        const auto put = [&](const auto& x) { out(x); };
-        model.now.each(model.now, put);
-        model.means.each(model.means, put);
-      },
-      model_);
+  const auto put = [&](const auto& x) { out(x); };
+  model_.now.each(model_.now, put);
+  model_.means.each(model_.means, put);
 }
 
 void DriveInTime::restore(ArchiveReader& in, const Design<double>& design, const Settings& settings) {
@@ -46,14 +34,10 @@ void DriveInTime::restore(ArchiveReader& in, const Design<double>& design, const
   build(design, settings);
   inputs_ = inputs;
   apply_inputs();
-  std::visit(
-      [&](auto& model) {
-        const auto get = [&](auto& x) { in(x); };
-        model.now.each(model.now, get);
-        model.means.each(model.means, get);
-        if (scale > 0.0) model.scale_to(scaled_to_ = scale);
-      },
-      model_);
+  const auto get = [&](auto& x) { in(x); };
+  model_.now.each(model_.now, get);
+  model_.means.each(model_.means, get);
+  if (scale > 0.0) model_.scale_to(scaled_to_ = scale);
 }
 
 }  // namespace wingbeat::fmu

@@ -6,13 +6,10 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <type_traits>
 
 #include "fmu/dynamics.hpp"
-#include "time/crank_model.hpp"
-#include "time/direct_model.hpp"
-#include "time/pitch_direct_model.hpp"
 #include "time/simulation.hpp"
+#include "time/time_model.hpp"
 
 namespace wingbeat::fmu {
 
@@ -60,14 +57,14 @@ struct CycleMeans {
 /// The work that a step may take has been done.
 struct WorkSpent {};
 
-/// CrankModel, DirectModel or PitchDirectModel; satisfies TimeModel. A crank's cycle ends where the crank has turned
-/// once more in either direction, a direct drive's at the end of a period of its supply.
-template <class Base>
-class MeasuredModel : public Base {
+/// A crank's cycle ends where the crank has turned once more in either direction, a direct drive's at the end of a
+/// period of its supply.
+class MeasuredModel : public detail::TimeModel {
  public:
-  static constexpr bool crank = std::is_same_v<Base, detail::CrankModel>;
+  using Base = detail::TimeModel;
+  /// Of cranks.
   static constexpr std::size_t cycle_end = std::size_t(Base::indicator_count), rest = cycle_end + 1;
-  static constexpr std::size_t indicator_count = cycle_end + (crank ? 2 : 0);
+  static constexpr std::size_t indicator_count = rest + 1;
   /// Of typical speeds and currents: below it a crank rests, above the double it turns. Of a direct drive: of its
   /// typical speed, the root mean square over a cycle.
   static constexpr double rest_level = 1e-3;
@@ -80,58 +77,49 @@ class MeasuredModel : public Base {
 
   /// Typical sizes are now those by which rest is assessed.
   void judge_rest_by_typical() {
-    rest_speed = this->typical()[1];
-    if constexpr (crank) rest_current = this->current_scale;
+    rest_speed = speed_scale;
+    if (!direct) rest_current = current_scale;
   }
 
   /// After the model's own start.
   void start_cycles() {
     means = {};
-    means.begin = means.phase_time = this->now.t;
-    if constexpr (crank) means.mark = this->now.theta;
-    else means.mark = means.phase = this->w * this->now.t;
+    means.begin = means.phase_time = now.t;
+    if (direct) means.mark = means.phase = phase_rate() * now.t;
+    else means.mark = now.moving.angle;
   }
 
   /// Of a direct drive's supply [rad].
-  double phase_at(double t) const
-    requires(!crank)
-  {
-    return means.phase + this->w * (t - means.phase_time);
-  }
+  double phase_at(double t) const { return means.phase + phase_rate() * (t - means.phase_time); }
+  double phase_rate() const { return two_pi * supply.frequency; }  ///< [rad/s]
   /// The supply goes on at another frequency [Hz] from now on.
-  void set_frequency(double frequency)
-    requires(!crank)
-  {
-    means.phase = phase_at(this->now.t);
-    means.phase_time = this->now.t;
-    this->vehicle.drive_frequency = frequency;
-    this->w = two_pi * frequency;
-    this->period = 1.0 / frequency;
+  void set_frequency(double frequency) {
+    means.phase = phase_at(now.t);
+    means.phase_time = now.t;
+    vehicle.drive_frequency = supply.frequency = frequency;
   }
 
   void unknowns(double* y) const {
     Base::unknowns(y);
-    std::copy(means.sums.begin(), means.sums.end(), y + this->coupled);
+    std::copy(means.sums.begin(), means.sums.end(), y + coupled);
   }
   void set(double t, const double* y) {
     Base::set(t, y);
-    std::copy_n(y + this->coupled, quadrature_count, means.sums.begin());
+    std::copy_n(y + coupled, quadrature_count, means.sums.begin());
   }
   std::array<double, indicator_count> indicators(double t, const double* y) const {
     std::array<double, indicator_count> all;
     const auto own = Base::indicators(t, y);
     std::copy(own.begin(), own.end(), all.begin());
-    if constexpr (crank) {
-      all[cycle_end] = 1.0 - std::abs(y[0] - means.mark) / two_pi;
-      all[rest] = rest_margin(t, y);
-    }
+    all[cycle_end] = direct ? 1.0 : 1.0 - std::abs(y[0] - means.mark) / two_pi;
+    all[rest] = direct ? 1.0 : rest_margin(t, y);
     return all;
   }
   std::array<int, indicator_count> directions() const {
     std::array<int, indicator_count> all;
     const auto own = Base::directions();
     std::copy(own.begin(), own.end(), all.begin());
-    if constexpr (crank) all[cycle_end] = all[rest] = -1;
+    all[cycle_end] = all[rest] = -1;
     return all;
   }
   bool branch_lost() {
@@ -141,15 +129,13 @@ class MeasuredModel : public Base {
   }
   void handle(std::size_t indicator) {
     if (indicator < cycle_end) return adding_impulses([&] { Base::handle(indicator); });
-    if constexpr (crank) {
-      if (indicator == rest) {
-        means.rests = !means.rests;
-      } else {
-        means.end_cycle(this->now.t);
-        const double turns = std::round((this->now.theta - means.mark) / two_pi);
-        means.mark = turns == 0.0 ? this->now.theta : means.mark + two_pi * turns;
-      }
+    if (indicator == rest) {
+      means.rests = !means.rests;
+      return;
     }
+    means.end_cycle(now.t);
+    const double turns = std::round((now.moving.angle - means.mark) / two_pi);
+    means.mark = turns == 0.0 ? now.moving.angle : means.mark + two_pi * turns;
   }
   std::optional<TransientEvent::Kind> event_at(std::size_t indicator) const {
     if (indicator < cycle_end) return Base::event_at(indicator);
@@ -157,59 +143,40 @@ class MeasuredModel : public Base {
   }
   void begin_piece() {
     adding_impulses([&] { Base::begin_piece(); });
-    if constexpr (crank) note_motion();
+    if (!direct) note_motion();
   }
   double next_switch() const {
-    if constexpr (crank) return Base::next_switch();
-    else return means.phase_time + (means.mark + two_pi - means.phase) / this->w;
+    return direct ? means.phase_time + (means.mark + two_pi - means.phase) / phase_rate() : Base::next_switch();
   }
   void switch_supply() {
-    if constexpr (crank) {
-      Base::switch_supply();
-    } else {
-      means.phase = phase_at(this->now.t);
-      means.phase_time = this->now.t;
-      means.end_cycle(this->now.t);
-      means.mark += two_pi * std::max(1.0, std::floor((means.phase - means.mark) / two_pi));
-      const double speed_square = means.mean[detail::quadrature_of(Integral::speed_square)];
-      means.rests = !(speed_square > square(rest_level * rest_speed));
-    }
+    if (!direct) return Base::switch_supply();
+    means.phase = phase_at(now.t);
+    means.phase_time = now.t;
+    means.end_cycle(now.t);
+    means.mark += two_pi * std::max(1.0, std::floor((means.phase - means.mark) / two_pi));
+    const double speed_square = means.mean[detail::quadrature_of(Integral::speed_square)];
+    means.rests = !(speed_square > square(rest_level * rest_speed));
   }
   /// The supply as it is by now, however long ago it switched last.
   void follow_supply() {
-    const double t = this->now.t, due = t + 1e-14 * std::abs(t);
+    const double t = now.t, due = t + 1e-14 * std::abs(t);
     for (int n = 0; n < 4 && next_switch() <= due; ++n) switch_supply();
-    if constexpr (crank) {
-      if (next_switch() <= t) Base::catch_up_with_supply();
-    }
+    if (!direct && next_switch() <= t) Base::catch_up_with_supply();
   }
 
-  bool stands() const { return means.rests || (crank && this->now.stuck); }
+  bool stands() const { return means.rests || (!direct && now.stuck); }
   /// False: the means are 0.
-  bool has_means() const { return means.whole && !stands() && !this->ended(); }
-
-  Mode mode() const {
-    Mode mode;
-    mode.stuck = this->now.stuck;
-    if constexpr (requires { this->now.held; }) mode.held = this->now.held;
-    if constexpr (crank) mode.direction = this->now.branch.direction;
-    else if constexpr (requires { this->now.direction; }) mode.direction = this->now.direction;
-    return mode;
-  }
+  bool has_means() const { return means.whole && !stands() && !ended(); }
 
  private:
   /// What impacts add to the integrals at once is added to the sums.
   template <class Change>
   void adding_impulses(const Change& change) {
-    if constexpr (requires { this->now.impulses; }) {
-      const auto before = this->now.impulses;
-      change();
-      for (std::size_t k = 0; k < quadrature_count; ++k) {
-        const auto which = std::size_t(detail::quadratures[k]);
-        means.sums[k] += this->now.impulses[which] - before[which];
-      }
-    } else {
-      change();
+    const auto before = now.impulses;
+    change();
+    for (std::size_t k = 0; k < quadrature_count; ++k) {
+      const auto which = std::size_t(detail::quadratures[k]);
+      means.sums[k] += now.impulses[which] - before[which];
     }
   }
 
@@ -220,7 +187,7 @@ class MeasuredModel : public Base {
     double motion = std::abs(y[1]) / rest_speed, dy[max_unknowns] = {};
     if (motion < max_motion && Base::rates(t, y, dy, false)) {
       motion = std::max(motion, std::abs(dy[1]) / square(rest_speed));
-      if (this->inductive) motion = std::max(motion, std::abs(dy[2]) / (rest_speed * rest_current));
+      if (indices.inductive) motion = std::max(motion, std::abs(dy[2]) / (rest_speed * rest_current));
     }
     motion = std::min(motion, max_motion) / rest_level;
     return means.rests ? 2.0 - motion : motion - 1.0;
@@ -231,19 +198,19 @@ class MeasuredModel : public Base {
   void note_motion() {
     double y[max_unknowns] = {};
     Base::unknowns(y);
-    if (rest_margin(this->now.t, y) < 0.0) means.rests = !means.rests;
-    const double t = this->now.t, direction = this->now.branch.direction;
+    if (rest_margin(now.t, y) < 0.0) means.rests = !means.rests;
+    const double t = now.t, direction = now.direction;
     const bool stands_now = stands();
     bool anew = means.stood && !stands_now && !(t - means.stood_since <= means.period);
     if (stands_now && !means.stood) means.stood_since = t;
     means.stood = stands_now;
-    if (!this->now.stuck && direction != means.direction) {
+    if (!now.stuck && direction != means.direction) {
       anew |= means.direction != 0.0;
       means.direction = direction;
     }
     if (!anew) return;
     means.begin_cycle(t);
-    means.mark = this->now.theta;
+    means.mark = now.moving.angle;
     means.whole = false;
   }
 };
@@ -253,14 +220,13 @@ class MeasuredModel : public Base {
 namespace wingbeat::detail {
 
 /// Its unknowns with the sums behind them.
-template <class Base>
-IntegratorProblem problem_of(const fmu::MeasuredModel<Base>& model, const double& relative) {
-  IntegratorProblem p = problem_of(static_cast<const Base&>(model), relative);
+inline IntegratorProblem problem_of(const fmu::MeasuredModel& model, const double& relative) {
+  IntegratorProblem p = problem_of(static_cast<const TimeModel&>(model), relative);
   p.size = model.coupled + quadrature_count;
-  p.roots = int(fmu::MeasuredModel<Base>::indicator_count);
+  p.roots = int(fmu::MeasuredModel::indicator_count);
   p.rates = [&model](double t, const double* y, double* dy) {
     if (--model.work_left < 0) throw fmu::WorkSpent();
-    if (!model.Base::rates(t, y, dy, false)) return false;
+    if (!model.TimeModel::rates(t, y, dy, false)) return false;
     const auto all = fmu::evaluate<double>(model.vehicle, model.mode(), y, model.voltage(t));
     for (int k = 0; k < quadrature_count; ++k) dy[model.coupled + k] = all.integrands[std::size_t(quadratures[k])];
     return true;

@@ -54,11 +54,11 @@ constexpr Row mean_rows[] = {{"frequency_mean", "Hz", "flapping frequency"},
                              {"power_copper_mean", "W", "mean loss in the armature resistance"}};
 static_assert(std::size(mean_rows) == std::size_t(MeanId::last));
 
-bool has_output(OutputId which, const StateIndices& indices) {
+bool has_output(OutputId which, const UnknownIndices& indices) {
   switch (which) {
     case OutputId::crank_angle:
     case OutputId::crank_speed:
-    case OutputId::rod_force: return indices.crank;
+    case OutputId::rod_force: return indices.rotates;
     case OutputId::pitch_angle:
     case OutputId::pitch_velocity: return indices.pitching;
     case OutputId::roll_moment:
@@ -69,12 +69,12 @@ bool has_output(OutputId which, const StateIndices& indices) {
 }
 
 std::vector<Row> state_rows(const StateLayout& layout) {
-  const StateIndices& indices = layout.indices;
+  const UnknownIndices& indices = layout.indices;
   std::vector<Row> rows(indices.count);
-  rows[0] = indices.crank ? Row{"state_crank_angle", "rad", "crank angle, not wrapped"}
-                          : Row{"state_stroke_angle", "rad", "stroke angle"};
-  rows[1] = indices.crank ? Row{"state_crank_speed", "rad/s", "crank speed"}
-                          : Row{"state_flapping_velocity", "rad/s", "rate of the stroke angle"};
+  rows[0] = indices.rotates ? Row{"state_crank_angle", "rad", "crank angle, not wrapped"}
+                            : Row{"state_stroke_angle", "rad", "stroke angle"};
+  rows[1] = indices.rotates ? Row{"state_crank_speed", "rad/s", "crank speed"}
+                            : Row{"state_flapping_velocity", "rad/s", "rate of the stroke angle"};
   if (indices.inductive) rows[indices.current] = {"state_current", "A", "armature current of all motors"};
   if (indices.pitching) {
     rows[indices.pitch] = {"state_pitch_angle", "rad", "pitch angle of the wings"};
@@ -163,7 +163,7 @@ void add_parameters(Table& table, const Design<double>& design) {
     if (std::isfinite(p.range.upper)) v.max = p.range.upper * (p.range.below_upper ? below : 1.0);
     if (p.path == "vehicle.motors" && has_two_drives(design)) v.min = v.max = 2.0;
   }
-  const StateIndices indices(resolve(design));
+  const UnknownIndices indices(resolve(design));
   const auto setting = [&](SettingId id, const char* name, const char* unit, const char* description) -> Variable& {
     return table.add(VariableKind::setting, std::size_t(id), name, unit, description, "parameter", "fixed", "exact");
   };
@@ -211,13 +211,13 @@ bool is_tunable(std::string_view key) {
 }
 
 std::vector<Watched> watched_events(const Vehicle<double>& v) {
-  const StateIndices indices(v);
+  const UnknownIndices indices(v);
   std::vector<Watched> events;
-  if (indices.crank) events = {Watched::standstill, Watched::jam};
+  if (indices.rotates) events = {Watched::standstill, Watched::jam};
   if (indices.pitching && has_stop(v.pitch.hinge)) events.push_back(Watched::stop);
   events.push_back(Watched::cycle_end);
-  if (indices.crank) events.push_back(Watched::rest);
-  if (!indices.crank && !indices.pitching) events.push_back(Watched::slip_end);
+  if (indices.rotates) events.push_back(Watched::rest);
+  if (!indices.rotates) events.push_back(Watched::slip_end);
   return events;
 }
 
@@ -259,7 +259,7 @@ std::string unit_in_fmu(std::string_view unit) {
 std::vector<Variable> variables_of(const Design<double>& design) {
   const Vehicle<double> vehicle = drive_vehicle(design, has_two_drives(design));
   const StateLayout layout(vehicle);
-  const StateIndices& indices = layout.indices;
+  const UnknownIndices& indices = layout.indices;
   const bool two = has_two_drives(design);
   const std::size_t first = two ? 1 : 0, last = two ? 2 : 0;
   Table table;

@@ -90,13 +90,13 @@ inline constexpr ExposedSum exposed_sums[] = {
     {"sum_power_aerodynamic", "J", "energy given to the air", Integral::aero_work}};
 inline constexpr std::size_t exposed_sum_count = std::size(exposed_sums);
 
-/// Unknowns of a drive as states of model exchange: those of the time model as StateIndices counts them, the phase of
+/// Unknowns of a drive as states of model exchange: those of the time model as UnknownIndices counts them, the phase of
 /// the supply where it is a sine that drives the wings directly, the sums of exposed_sums.
 struct StateLayout {
-  StateIndices indices;
+  UnknownIndices indices;
   bool has_phase;
 
-  explicit StateLayout(const Vehicle<double>& vehicle) : indices(vehicle), has_phase(!indices.crank) {}
+  explicit StateLayout(const Vehicle<double>& vehicle) : indices(vehicle), has_phase(!indices.rotates) {}
   std::size_t phase() const { return indices.count; }
   std::size_t first_sum() const { return indices.count + (has_phase ? 1 : 0); }
   std::size_t count() const { return first_sum() + exposed_sum_count; }

@@ -6,7 +6,7 @@
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/study/endurance.hpp"
-#include "wingbeat/vehicle/motion.hpp"
+#include "wingbeat/vehicle/dynamics.hpp"
 
 namespace wingbeat {
 namespace {
@@ -15,25 +15,12 @@ constexpr double transient_tightest = 1e-11;
 
 using detail::format;
 
-/// Everything that acts at a state where the supply drives v, on the branch that the state itself decides.
+/// Everything that acts at a state where the supply drives v, in the mode that the state itself decides.
 Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, double omega, double i, double v) {
-  const double v_t = terminal_voltage(vehicle, v, i);
-  const double s = std::sin(crank_angle), c = std::cos(crank_angle);
-  const double stroke_velocity = crank_kinematics(vehicle.transmission, s, c).stroke_slope * omega;
-  Branch<double> branch{sign_of(stroke_velocity), 1.0, sign_of(omega), 1.0};
-  Motion<double> m = motion_at(vehicle, s, c, omega, i, v_t, branch);
-  branch.pitching = sign_of(m.aero.pitch_margin);
-  if (branch.pitching < 0.0) m = motion_at(vehicle, s, c, omega, i, v_t, branch);
-  // The signs of rod force and gear torque may depend on each other: on one of their four branches both agree.
-  for (const double gear : {1.0, -1.0}) {
-    for (const double force : {1.0, -1.0}) {
-      branch.gear = gear;
-      branch.force = force;
-      m = motion_at(vehicle, s, c, omega, i, v_t, branch);
-      const bool force_agrees = force > 0.0 ? m.force_switch >= 0.0 : m.force_switch < 0.0;
-      if (force_agrees && gear * m.gear_torque >= 0.0) return m;
-    }
-  }
+  Mode<double> mode;
+  mode.direction = sign_of(omega);
+  PitchMotion<double> m;
+  mode_at(vehicle, instant_at(vehicle, {crank_angle, omega, i}, v, mode), mode, &m);
   return m;
 }
 

@@ -21,31 +21,33 @@ constexpr double cycle_spread_settled = 1e-2;
 /// small already. With Coulomb friction, the equilibrium is where the torque no longer exceeds it: an overdamped crank
 /// creeps there without ever standing still.
 bool CrankStartUp::captured() {
-  if (model_.supply.type != SupplyType::constant || std::abs(now_.omega) > 0.02 * model_.speed_scale) return false;
+  if (model_.supply.type != SupplyType::constant || std::abs(now_.moving.speed) > 0.02 * model_.speed_scale)
+    return false;
   const Motor<double>& m = model_.vehicle.motor;
   const double final_current = now_.switched_voltage / circuit_resistance(model_.vehicle);
   if (model_.wingless || model_.vehicle.spring.stiffness == 0.0) {
-    if (final_current > 0.0 || std::abs(now_.omega) > 1e-7 * model_.speed_scale) return false;
-    rest(now_.theta, false);
+    if (final_current > 0.0 || std::abs(now_.moving.speed) > 1e-7 * model_.speed_scale) return false;
+    rest(now_.moving.angle, false);
     return true;
   }
   const auto excess_torque = [&](double theta) {
-    return model_.net_static_torque(theta, final_current) - now_.branch.direction * model_.holding_torque(theta);
+    return model_.net_static_torque(theta, final_current) - now_.direction * model_.holding_torque(theta);
   };
-  double theta = now_.theta, slope = 0.0;
+  double theta = now_.moving.angle, slope = 0.0;
   for (int k = 0; k < 5; ++k) {
     constexpr double step = 1e-6;
     slope = (excess_torque(theta + step) - excess_torque(theta - step)) / (2.0 * step);
     if (!(slope < 0.0)) return false;
     theta -= excess_torque(theta) / slope;
-    if (!(std::abs(theta - now_.theta) < 0.01)) return false;
+    if (!(std::abs(theta - now_.moving.angle) < 0.01)) return false;
   }
   const double scale = m.torque_constant * model_.current_scale;
   if (std::abs(excess_torque(theta)) > 1e-9 * scale) return false;
   const bool friction = model_.holding_torque(theta) > 1e-9 * scale;
-  const double inertia = effective_inertia(model_.vehicle, model_.kinematics(now_.theta), 0.0);
-  const double energy = inertia * square(now_.omega) - slope * square(theta - now_.theta) +
-                        m.armature_inductance * square(now_.i - final_current) + 2.0 * model_.pitch_energy();
+  const double inertia = effective_inertia(model_.vehicle, model_.kinematics(now_.moving.angle), 0.0);
+  const double energy = inertia * square(now_.moving.speed) - slope * square(theta - now_.moving.angle) +
+                        m.armature_inductance * square(now_.moving.current - final_current) +
+                        2.0 * pitch_energy(model_.vehicle, now_.moving, 0.0);
   if (energy > -slope * square(friction ? captured_creep : captured_amplitude)) return false;
   rest(theta, friction);
   return true;
@@ -59,7 +61,7 @@ bool CrankStartUp::swings_repeat() {
   repeats_ = same ? repeats_ + 1 : 0;
   last_low_ = window_low_;
   last_high_ = window_high_;
-  window_low_ = window_high_ = now_.theta;
+  window_low_ = window_high_ = now_.moving.angle;
   window_cycles_ = crossings_.size();
   window_end_ = now_.t + window_;
   if (repeats_ < 3) return false;
@@ -67,7 +69,7 @@ bool CrankStartUp::swings_repeat() {
   result_.settled = true;
   result_.status = FlappingStatus::locked;
   result_.time_to_steady = now_.t;
-  if (model_.supply.type == SupplyType::pwm && stalls(wrap_angle(now_.theta))) return true;
+  if (model_.supply.type == SupplyType::pwm && stalls(wrap_angle(now_.moving.angle))) return true;
   if (last_high_ - last_low_ < same_swing) result_.lock_angle = wrap_angle(0.5 * (last_low_ + last_high_));
   result_.evidence = {.kind = Evidence::swings, .range = AngleRange{last_low_, last_high_}};
   return true;
@@ -102,7 +104,7 @@ void CrankStartUp::flap() {
                         .cycles = int(crossings_.size()),
                         .repeats_after = int(turns_),
                         .extrapolated = jumped_};
-    if (model_.pitching && options_.metrics) pitching_.add_to(result_.evidence, model_);
+    if (model_.indices.pitching && options_.metrics) pitching_.add_to(result_.evidence, model_);
     return;
   }
   result_.settled = result_.cycle_scatter < cycle_spread_settled;
@@ -134,8 +136,8 @@ bool CrankStartUp::stalls(double angle) {
 void CrankStartUp::rest(double theta, bool held_by_friction) {
   done_ = true;
   result_.settled = true;
-  now_.theta = theta;
-  now_.omega = 0.0;
+  now_.moving.angle = theta;
+  now_.moving.speed = 0.0;
   const double R = circuit_resistance(model_.vehicle);
   const double mean_current = model_.supply.type == SupplyType::sine ? 0.0 : model_.vehicle.voltage / R;
   const double angle = wrap_angle(theta);
@@ -164,7 +166,7 @@ void CrankStartUp::jam(double theta) {
   if (stalls(wrap_angle(theta))) return;
   result_.jam_angle = wrap_angle(theta);
   const CrankKinematics<double> k = model_.kinematics(theta);
-  if (k.wing_jacobian <= 2.0 * CrankModel::smallest_margin * typical_lever(model_.vehicle.transmission)) {
+  if (k.wing_jacobian <= 2.0 * TimeModel::smallest_margin * typical_lever(model_.vehicle.transmission)) {
     result_.evidence = {.kind = Evidence::lever_vanishes, .angle = *result_.jam_angle, .lever = k.wing_jacobian};
     return;
   }

@@ -28,7 +28,8 @@ bool cancels(const Metrics<double>& m) {
 /// A forward crossing of theta = 2 pi n. True if the integrator must start afresh.
 bool CrankStartUp::cycle_done() {
   const double before = crossings_.empty() ? 0.0 : crossings_.back().time + crossings_.back().skipped;
-  crossings_.push_back({now_.t, now_.omega, now_.i, now_.t - before, 0.0, now_.psi, now_.pitch_velocity});
+  crossings_.push_back({now_.t, now_.moving.speed, now_.moving.current, now_.t - before, 0.0, now_.moving.pitch_angle,
+                        now_.moving.pitch_velocity});
   event(Kind::revolution);
   next_cycle_ += two_pi;
   const bool restart = model_.supply.type == SupplyType::constant ? cycle_done_constant() : cycle_done_averaging();
@@ -146,8 +147,9 @@ void CrankStartUp::cycle_measured(double rate) {
   if (!closed && contraction_ > 0.0 && cycles_since_jump_ >= 2) {
     const Crossing& last = crossings_[crossings_.size() - 2];
     const double share = contraction_ / (1.0 - contraction_);
-    move_state({share * (now_.omega - last.omega), share * (now_.i - last.current), share * (now_.psi - last.psi),
-                share * (now_.pitch_velocity - last.pitch_velocity)});
+    move_state({share * (now_.moving.speed - last.omega), share * (now_.moving.current - last.current),
+                share * (now_.moving.pitch_angle - last.psi),
+                share * (now_.moving.pitch_velocity - last.pitch_velocity)});
     cycles_since_jump_ = 0;
     change_before_jump_ = change_;
   }
@@ -164,7 +166,7 @@ bool CrankStartUp::repeats_after(std::size_t cycles) const {
         std::abs(a.omega - b.omega) / model_.speed_scale + std::abs(a.current - b.current) / model_.current_scale;
     double within =
         std::abs(a.omega - next.omega) / model_.speed_scale + std::abs(a.current - next.current) / model_.current_scale;
-    if (model_.pitching) {
+    if (model_.indices.pitching) {
       off += std::abs(a.psi - b.psi) / model_.pitch_scale +
              std::abs(a.pitch_velocity - b.pitch_velocity) / model_.pitch_velocity_scale;
       within += std::abs(a.psi - next.psi) / model_.pitch_scale +
@@ -177,30 +179,33 @@ bool CrankStartUp::repeats_after(std::size_t cycles) const {
 
 /// Largest relative change of the state since a crossing.
 double CrankStartUp::state_change(const Crossing& before) const {
-  double change = std::max(std::abs(now_.omega - before.omega) / (std::abs(now_.omega) + 1e-6 * model_.speed_scale),
-                           std::abs(now_.i - before.current) / (std::abs(now_.i) + 0.01 * model_.current_scale));
-  if (!model_.pitching) return change;
+  double change = std::max(
+      std::abs(now_.moving.speed - before.omega) / (std::abs(now_.moving.speed) + 1e-6 * model_.speed_scale),
+      std::abs(now_.moving.current - before.current) / (std::abs(now_.moving.current) + 0.01 * model_.current_scale));
+  if (!model_.indices.pitching) return change;
   const auto of_pitch = [](double now, double then, double scale) {
     return std::abs(now - then) / (std::abs(now) + 0.1 * scale);
   };
-  change = std::max(change, of_pitch(now_.psi, before.psi, model_.pitch_scale));
-  return std::max(change, of_pitch(now_.pitch_velocity, before.pitch_velocity, model_.pitch_velocity_scale));
+  change = std::max(change, of_pitch(now_.moving.pitch_angle, before.psi, model_.pitch_scale));
+  return std::max(change, of_pitch(now_.moving.pitch_velocity, before.pitch_velocity, model_.pitch_velocity_scale));
 }
 
 /// Moves the state, at a crossing, by omega, i, psi and psi'. Wings that a stop holds stay there.
 void CrankStartUp::move_state(const std::array<double, 4>& by) {
-  now_.omega += by[0];
-  now_.i = model_.inductive ? now_.i + by[1] : algebraic_current(model_.vehicle, model_.voltage(now_.t), now_.omega);
-  if (model_.pitching && !now_.held) {
+  now_.moving.speed += by[0];
+  now_.moving.current = model_.indices.inductive
+                            ? now_.moving.current + by[1]
+                            : algebraic_current(model_.vehicle, model_.voltage(now_.t), now_.moving.speed);
+  if (model_.indices.pitching && !now_.held) {
     const double stop = model_.vehicle.pitch.hinge.stop;
-    now_.psi = std::clamp(now_.psi + by[2], -stop, stop);
-    now_.pitch_velocity += by[3];
+    now_.moving.pitch_angle = std::clamp(now_.moving.pitch_angle + by[2], -stop, stop);
+    now_.moving.pitch_velocity += by[3];
   }
   Crossing& here = crossings_.back();
-  here.omega = now_.omega;
-  here.current = now_.i;
-  here.psi = now_.psi;
-  here.pitch_velocity = now_.pitch_velocity;
+  here.omega = now_.moving.speed;
+  here.current = now_.moving.current;
+  here.psi = now_.moving.pitch_angle;
+  here.pitch_velocity = now_.moving.pitch_velocity;
 }
 
 /// Where cycles converge slowly along one direction, skips ahead. Blocks of cycles of one size show by how much each
@@ -224,8 +229,8 @@ bool CrankStartUp::jump_by_blocks(std::size_t n, std::size_t block) {
     const Crossing& a = crossings_[n - 1 - (back + 1) * block];
     const Crossing& b = crossings_[n - 1 - back * block];
     std::array<double, 4> d{(b.omega - a.omega) / model_.speed_scale,
-                            model_.inductive ? (b.current - a.current) / model_.current_scale : 0.0};
-    if (model_.pitching) {
+                            model_.indices.inductive ? (b.current - a.current) / model_.current_scale : 0.0};
+    if (model_.indices.pitching) {
       d[2] = (b.psi - a.psi) / model_.pitch_scale;
       d[3] = (b.pitch_velocity - a.pitch_velocity) / model_.pitch_velocity_scale;
     }
@@ -240,11 +245,11 @@ bool CrankStartUp::jump_by_blocks(std::size_t n, std::size_t block) {
   if (!(newer > 0.0 && newer < 0.9999)) return false;
   const double gain = newer / (1.0 - newer), per_cycle = std::pow(newer, 1.0 / double(block));
   const auto [speed, current, pitch, pitch_velocity] = difference(0);
-  const double to_come =
-      std::max({std::abs(speed) * model_.speed_scale / std::abs(now_.omega),
-                std::abs(current) * model_.current_scale / (std::abs(now_.i) + 0.01 * model_.current_scale),
-                std::abs(pitch), std::abs(pitch_velocity)}) *
-      gain;
+  const double to_come = std::max({std::abs(speed) * model_.speed_scale / std::abs(now_.moving.speed),
+                                   std::abs(current) * model_.current_scale /
+                                       (std::abs(now_.moving.current) + 0.01 * model_.current_scale),
+                                   std::abs(pitch), std::abs(pitch_velocity)}) *
+                         gain;
   const bool to_the_limit = to_come <= 1e-3;
   if (std::abs(newer - older) > (to_the_limit ? 0.05 : 0.2) * (1.0 - newer)) return false;
   double share = 1.0, skipped = 0.0;
@@ -362,13 +367,13 @@ void CrankStartUp::take_metrics(int cycles) {
         m.viscous_damping * total(Integral::speed_square) - m.friction_torque * total(Integral::travel) -
         total(Integral::motor_work) - (model_.motor_energy() - motor_mark_) / cycles;
   }
-  if (model_.pitching) {
+  if (model_.indices.pitching) {
     // Of a crank that stands for a while, what rounding leaves of the speed is none.
     double& slowest = extremes_[std::size_t(Extreme::crank_speed_min)];
     if (std::abs(slowest) < 1e-9 * model_.speed_scale) slowest = 0.0;
   }
   result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
-  if (model_.pitching) pitching_.finish(model_, start, now_.t, cycles, *result_.metrics);
+  if (model_.indices.pitching) pitching_.finish(model_, start, now_.t, cycles, *result_.metrics);
   result_.averaged_cycles = cycles;
   if (ripple_count_ > 0) result_.current_ripple = ripple_sum_ / double(ripple_count_);
 }

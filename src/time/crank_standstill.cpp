@@ -13,25 +13,16 @@ namespace wingbeat::detail {
 void CrankStartUp::stand() {
   if (!model_.wings_rest()) return stand_while_wings_pitch();
   now_.stuck = false;
-  double load, hold;
-  if (has_gear_loss(model_.vehicle.motor)) {
-    const StandingTorques<double> torques = model_.standing_torques(now_.theta);
-    load = 0.5 * (torques.low + torques.high);
-    hold = 0.5 * (torques.high - torques.low);
-  } else {
-    const CrankKinematics<double> k = model_.kinematics(now_.theta);
-    load = model_.static_force(k) * k.crank_jacobian + model_.vehicle.load_torque;
-    hold = model_.vehicle.friction.radius * std::abs(model_.static_force(k)) + model_.constant_friction;
-  }
+  const StandingTorques<double> torques = model_.standing_torques(now_.moving.angle);
   const double K = model_.vehicle.motor.torque_constant;
-  if (!model_.inductive) now_.i = model_.voltage(now_.t) / circuit_resistance(model_.vehicle);
-  const double net = K * now_.i - load;
-  if (std::abs(net) > hold) {
-    now_.branch.direction = sign_of(net);
+  if (!model_.indices.inductive) now_.moving.current = model_.voltage(now_.t) / circuit_resistance(model_.vehicle);
+  const double torque = K * now_.moving.current;
+  if (torque < torques.low || torque > torques.high) {
+    now_.direction = sign_of(torque - 0.5 * (torques.low + torques.high));
     return;
   }
   const double from = now_.t;
-  if (!stick((load - hold) / K, (load + hold) / K)) return;
+  if (!stick(torques.low / K, torques.high / K)) return;
   if (now_.t > from || crossings_.empty()) event(Kind::breakaway);
 }
 
@@ -46,12 +37,12 @@ void CrankStartUp::stand_while_wings_pitch() {
     const double period = two_pi * std::sqrt((wings.pitch_inertia + wings.air.pp) / wings.hinge.stiffness);
     stuck_until_ = now_.t + 3.0 * period + 2.0 * model_.drive_period + 20.0 * model_.electrical_time;
   } else if (now_.t >= stuck_until_) {
-    rest(now_.theta, true);
+    rest(now_.moving.angle, true);
   }
 }
 
-/// Crank held by friction while the current stays in [low, high]. True when it breaks away, now_.t, now_.i and the
-/// direction then being set; false when the decision is in.
+/// Crank held by friction while the current stays in [low, high]. True when it breaks away, now_.t, now_.moving.current
+/// and the direction then being set; false when the decision is in.
 bool CrankStartUp::stick(double low, double high) {
   const Motor<double>& m = model_.vehicle.motor;
   const double R = circuit_resistance(model_.vehicle);
@@ -59,19 +50,19 @@ bool CrankStartUp::stick(double low, double high) {
   const auto inside = [&](double i) { return i >= low && i <= high; };
 
   if (model_.supply.type == SupplyType::constant && inside(now_.switched_voltage / R)) {
-    rest(now_.theta, true);
+    rest(now_.moving.angle, true);
     return false;
   }
   if (model_.supply.type == SupplyType::pwm) {
     // The current's limit cycle; on the way there it stays between its start and the cycle's ends.
     const double period = 1.0 / model_.supply.frequency;
     double top = model_.supply.voltage / R, bottom = 0.0;
-    if (model_.inductive) {
+    if (model_.indices.inductive) {
       top *= std::expm1(-model_.supply.duty * period / tau) / std::expm1(-period / tau);
       bottom = top * std::exp(-(1.0 - model_.supply.duty) * period / tau);
     }
     if (inside(top) && inside(bottom)) {
-      rest(now_.theta, true);
+      rest(now_.moving.angle, true);
       return false;
     }
   }
@@ -80,7 +71,7 @@ bool CrankStartUp::stick(double low, double high) {
     if (model_.supply.type == SupplyType::sine) {
       const double period = 1.0 / model_.supply.frequency;
       if (now_.t - started > 40.0 * tau + 2.0 * period) {
-        rest(now_.theta, true);
+        rest(now_.moving.angle, true);
         return false;
       }
       const double piece_end = std::min(end_time_, now_.t + period / 64.0);
@@ -90,19 +81,21 @@ bool CrankStartUp::stick(double low, double high) {
         continue;
       }
       relax(bisect(held_at, now_.t, piece_end).after);
-      now_.branch.direction = now_.i > high ? 1.0 : -1.0;
-      now_.i = now_.i > high ? high : low;
+      now_.direction = now_.moving.current > high ? 1.0 : -1.0;
+      now_.moving.current = now_.moving.current > high ? high : low;
       return true;
     }
     const double limit = now_.switched_voltage / R;
     const double piece_end = std::min(end_time_, model_.next_switch());
     if (!inside(limit)) {
       const double bound = limit > high ? high : low;
-      const double wait = model_.inductive ? tau * std::max(0.0, std::log((limit - now_.i) / (limit - bound))) : 0.0;
+      const double wait = model_.indices.inductive
+                              ? tau * std::max(0.0, std::log((limit - now_.moving.current) / (limit - bound)))
+                              : 0.0;
       if (now_.t + wait <= piece_end) {
         relax(now_.t + wait);
-        if (model_.inductive) now_.i = bound;
-        now_.branch.direction = limit > high ? 1.0 : -1.0;
+        if (model_.indices.inductive) now_.moving.current = bound;
+        now_.direction = limit > high ? 1.0 : -1.0;
         return true;
       }
     }
@@ -121,16 +114,18 @@ double CrankStartUp::standing_current(double theta) const {
     const double angular = two_pi * model_.supply.frequency, lag = std::atan(angular * tau);
     return model_.supply.voltage / R * std::cos(lag) * std::sin(angular * t - lag);
   };
-  return model_.inductive ? forced(theta) + (now_.i - forced(now_.t)) * std::exp(-(theta - now_.t) / tau)
-                          : forced(theta);
+  return model_.indices.inductive
+             ? forced(theta) + (now_.moving.current - forced(now_.t)) * std::exp(-(theta - now_.t) / tau)
+             : forced(theta);
 }
 
 /// Lets the current of the standing motor run on to the time `until`, before any switching of the supply.
 void CrankStartUp::relax(double until) {
-  const double start = now_.t, i_0 = now_.i, span = until - start;
+  const double start = now_.t, i_0 = now_.moving.current, span = until - start;
   const auto current = [&](double t) { return standing_current(t); };
   if (measuring_ && span > 0.0) {
-    const double force = std::abs(model_.static_force(model_.kinematics(now_.theta)));
+    const Configuration<double> here = configuration_at_angle(model_.vehicle, now_.moving.angle);
+    const double force = model_.wingless ? 0.0 : std::abs(static_rod_force(here.kinematics, here.spring_moment));
     double charge = 0.0, heat = 0.0, work = 0.0;
     if (model_.supply.type == SupplyType::sine) {
       constexpr double node = 0.77459666924148337704;  // three-point Gauss; spans are 1/64 of a drive period at most
@@ -143,9 +138,9 @@ void CrankStartUp::relax(double until) {
     } else {
       const double R = circuit_resistance(model_.vehicle), tau = model_.vehicle.motor.armature_inductance / R;
       const double limit = now_.switched_voltage / R;
-      const double d = model_.inductive ? i_0 - limit : 0.0;
-      const double a = model_.inductive ? -tau * std::expm1(-span / tau) : 0.0;
-      const double b = model_.inductive ? -0.5 * tau * std::expm1(-2.0 * span / tau) : 0.0;
+      const double d = model_.indices.inductive ? i_0 - limit : 0.0;
+      const double a = model_.indices.inductive ? -tau * std::expm1(-span / tau) : 0.0;
+      const double b = model_.indices.inductive ? -0.5 * tau * std::expm1(-2.0 * span / tau) : 0.0;
       charge = limit * span + d * a;
       heat = square(limit) * span + 2.0 * limit * d * a + square(d) * b;
       work = now_.switched_voltage * charge - model_.vehicle.source_resistance * heat;
@@ -160,13 +155,13 @@ void CrankStartUp::relax(double until) {
       }
     }
   }
-  recorder_.samples_until(until, [&](double t) { return TransientSample{t, now_.theta, 0.0, current(t)}; });
-  now_.i = current(until);
+  recorder_.samples_until(until, [&](double t) { return TransientSample{t, now_.moving.angle, 0.0, current(t)}; });
+  now_.moving.current = current(until);
   now_.t = until;
-  recorder_.note_current(now_.t, now_.i);
+  recorder_.note_current(now_.t, now_.moving.current);
   if (measuring_) {
     double& top = extremes_[std::size_t(Extreme::current)];
-    top = std::max(top, now_.i);
+    top = std::max(top, now_.moving.current);
     double& slowest = extremes_[std::size_t(Extreme::crank_speed_min)];
     slowest = std::max(slowest, 0.0);
   }

@@ -40,16 +40,17 @@ CrankStartUp::CrankStartUp(const Vehicle<double>& vehicle, const TransientOption
 }
 
 void CrankStartUp::prepare() {
-  model_.start(options_.crank_angle, options_.crank_speed, options_.current, options_.pitch_angle,
-               options_.pitch_velocity);
+  model_.start(
+      {options_.crank_angle, options_.crank_speed, options_.current, options_.pitch_angle, options_.pitch_velocity});
   const Vehicle<double>& vehicle = model_.vehicle;
   const Motor<double>& m = vehicle.motor;
   const double R = circuit_resistance(vehicle), K = m.torque_constant;
   const double cycle = model_.time_scale, drive = model_.drive_period;
   const double mechanical = model_.mechanical_time, electrical = model_.electrical_time;
-  swing_low_ = swing_high_ = now_.theta;
+  swing_low_ = swing_high_ = now_.moving.angle;
   const double released = 0.5 * pi * std::sqrt(vehicle.wing_count * vehicle.spring.stiffness / m.inertia);
-  runaway_speed_ = 1e3 * std::max({model_.speed_scale, std::abs(now_.omega), std::abs(now_.i) * R / K, released});
+  runaway_speed_ = 1e3 * std::max({model_.speed_scale, std::abs(now_.moving.speed),
+                                   std::abs(now_.moving.current) * R / K, released});
 
   stiff_ = model_.stiff();
   result_.stiff = stiff_;
@@ -62,7 +63,7 @@ void CrankStartUp::prepare() {
 
   window_ = std::max({cycle, 8.0 * drive, 0.5 * mechanical, electrical});
   window_end_ = window_;
-  window_low_ = window_high_ = now_.theta;
+  window_low_ = window_high_ = now_.moving.angle;
 
   const double force = K * model_.current_scale / typical_crank_lever(model_.vehicle.transmission);
   const double power = model_.current_scale * K * model_.speed_scale + model_.current_scale * model_.current_scale * R;
@@ -82,30 +83,32 @@ void CrankStartUp::prepare() {
   };
   for (int k = 0; k < quadrature_count; ++k) quadrature_scale_[k] = cycle * natural(quadratures[k]);
 
-  next_cycle_ = two_pi * (std::floor(now_.theta / two_pi) + 1.0);
-  recorder_.start(now_.i);
+  next_cycle_ = two_pi * (std::floor(now_.moving.angle / two_pi) + 1.0);
+  recorder_.start(now_.moving.current);
   sample();
 }
 
 void CrankStartUp::root_values(double t, const double* y, double* values, bool measuring) {
   const auto indicators = model_.indicators(t, y);
-  values[root_force] = last_force_switch_ = indicators[CrankModel::force];
-  values[root_standstill] = indicators[CrankModel::standstill];
+  values[root_force] = last_force_switch_ = indicators[TimeModel::force];
+  values[root_standstill] = indicators[TimeModel::standstill];
   values[root_cycle] = y[0] - next_cycle_;
-  values[root_jam] = indicators[CrankModel::jam];
-  if (!measuring && !model_.pitching) return;
-  values[root_stored_moment] = indicators[CrankModel::stored_moment];
-  values[root_reversal] = indicators[CrankModel::reversal];
-  if (!model_.pitching) return;
-  values[root_stop] = indicators[CrankModel::stop];
-  values[root_turn] = indicators[CrankModel::turn];
+  values[root_jam] = indicators[TimeModel::jam];
+  if (!measuring && !model_.indices.pitching) return;
+  values[root_stored_moment] = indicators[TimeModel::stored_moment];
+  values[root_reversal] = indicators[TimeModel::reversal];
+  if (!model_.indices.pitching) return;
+  values[root_stop] = indicators[TimeModel::stop];
+  values[root_turn] = indicators[TimeModel::turn];
 }
 
 std::unique_ptr<Integrator> CrankStartUp::integrator(bool measuring) {
   IntegratorProblem p = measuring ? problem_with_quadratures(model_, relative_tolerance_, quadrature_scale_)
                                   : problem_of(model_, relative_tolerance_);
   p.stiff = stiff_;
-  p.roots = model_.pitching ? int(root_pitching_count) : measuring ? int(root_measuring_count) : int(root_plain_count);
+  p.roots = model_.indices.pitching ? int(root_pitching_count)
+            : measuring             ? int(root_measuring_count)
+                                    : int(root_plain_count);
   p.rates = [this, measuring](double t, const double* y, double* dy) {
     ++result_.rate_evaluations;
     return model_.rates(t, y, dy, measuring);
@@ -121,18 +124,18 @@ std::unique_ptr<Integrator> CrankStartUp::integrator(bool measuring) {
 
 TransientResult CrankStartUp::run() {
   prepare();
-  if (model_.uniqueness_now() <= CrankModel::smallest_margin && !model_.wingless) jam(now_.theta);
+  if (model_.uniqueness_now() <= TimeModel::smallest_margin && !model_.wingless) jam(now_.moving.angle);
   while (!done_) {
-    if (now_.omega == 0.0) {
+    if (now_.moving.speed == 0.0) {
       stand();
     } else {
-      now_.branch.direction = sign_of(now_.omega);
+      now_.direction = sign_of(now_.moving.speed);
     }
     if (!done_) slide();
     if (!done_) out_of_budget();
   }
   result_.end_time = now_.t;
-  result_.end_crank_angle = now_.theta;
+  result_.end_crank_angle = now_.moving.angle;
   result_.cycles = int(crossings_.size());
   if (!crossings_.empty()) {
     result_.crank_speed = crossings_.back().omega;
@@ -149,8 +152,8 @@ bool CrankStartUp::out_of_budget() {
     give_up({.kind = Evidence::out_of_steps, .steps = options_.max_steps});
   } else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) {
     give_up({.kind = Evidence::cancelled});
-  } else if (std::abs(now_.omega) > runaway_speed_) {
-    give_up({.kind = Evidence::runs_away, .crank_speed = now_.omega});
+  } else if (std::abs(now_.moving.speed) > runaway_speed_) {
+    give_up({.kind = Evidence::runs_away, .crank_speed = now_.moving.speed});
   } else if (now_.t >= end_time_) {
     give_up({.kind = Evidence::out_of_time, .time = end_time_});
   }
@@ -158,7 +161,7 @@ bool CrankStartUp::out_of_budget() {
 }
 
 void CrankStartUp::switch_supply() {
-  const double i = now_.i, duty = model_.supply.duty;
+  const double i = now_.moving.current, duty = model_.supply.duty;
   model_.switch_supply();
   if (now_.switches % 2 == 1) {
     ripple_top_ = i;
@@ -174,15 +177,15 @@ void CrankStartUp::switch_supply() {
     event(Kind::supply_switch);
     sample();
   }
-  recorder_.note_current(now_.t, now_.i);
+  recorder_.note_current(now_.t, now_.moving.current);
 }
 
 /// Integrates one smooth branch to the next event that ends it.
 void CrankStartUp::slide() {
-  if (measuring_ && model_.pitching) add_variation();
+  if (measuring_ && model_.indices.pitching) add_variation();
   model_.resume();
-  if (measuring_ && model_.pitching) add_variation();
-  if (now_.jammed) return jam(now_.theta);
+  if (measuring_ && model_.indices.pitching) add_variation();
+  if (now_.jammed) return jam(now_.moving.angle);
   if (!now_.stuck) model_.choose_force_branch();
   std::unique_ptr<Integrator>& slot = measuring_ ? with_quadratures_ : plain_;
   if (!slot) slot = integrator(measuring_);
@@ -191,8 +194,8 @@ void CrankStartUp::slide() {
   model_.unknowns(y);
   if (measuring_) std::copy(q_, q_ + quadrature_count, y + model_.coupled);
 
-  const int halts = now_.stuck ? -1 : int(-now_.branch.direction);
-  int directions[root_pitching_count] = {int(-now_.branch.force), halts, 1, -1, 0, 0, -1, 0};
+  const int halts = now_.stuck ? -1 : int(-now_.direction);
+  int directions[root_pitching_count] = {int(-now_.force), halts, 1, -1, 0, 0, -1, 0};
   const double switching = model_.next_switch();
   double stop = std::min(end_time_, switching);
   if (now_.stuck) stop = std::min(stop, stuck_until_);
@@ -212,10 +215,10 @@ void CrankStartUp::slide() {
     if (outcome == Integrator::Outcome::failed) {
       if (relative_tolerance_ < 1e-9) {
         relative_tolerance_ = tightest_ = 10.0 * relative_tolerance_;
-        now_.force_branch_known = true;
+        now_.force_known = true;
         return;
       }
-      give_up({.kind = Evidence::integrator_failed, .angle = wrap_angle(now_.theta), .time = now_.t});
+      give_up({.kind = Evidence::integrator_failed, .angle = wrap_angle(now_.moving.angle), .time = now_.t});
       return;
     }
     now_.t = steps.time();
@@ -226,34 +229,34 @@ void CrankStartUp::slide() {
     bool branch_ends = false;
     if (outcome == Integrator::Outcome::root) {
       if (steps.found(root_jam)) {
-        jam(now_.theta);
+        jam(now_.moving.angle);
         return;
       }
       if (steps.found(root_standstill)) {
         if (now_.stuck) {
           const StandingTorques<double> torques = model_.standing_torques(y);
-          now_.branch.direction =
-              sign_of(2.0 * model_.vehicle.motor.torque_constant * now_.i - torques.low - torques.high);
+          now_.direction =
+              sign_of(2.0 * model_.vehicle.motor.torque_constant * now_.moving.current - torques.low - torques.high);
           now_.stuck = false;
           breaks_away_ = true;
           event(Kind::breakaway);
         } else {
-          now_.omega = 0.0;
+          now_.moving.speed = 0.0;
           event(Kind::standstill);
         }
         branch_ends = true;
       }
       if (steps.found(root_force)) {
         event(Kind::force_sign_change);
-        now_.branch.force = -now_.branch.force;
-        now_.force_branch_known = now_.omega != 0.0;
+        now_.force = -now_.force;
+        now_.force_known = now_.moving.speed != 0.0;
         branch_ends = true;
       }
       if (measuring_) add_variation();
-      if (model_.pitching && steps.found(root_stop)) {
+      if (model_.indices.pitching && steps.found(root_stop)) {
         meet_or_leave_stop();
         branch_ends = true;
-        if (now_.jammed) return jam(now_.theta);
+        if (now_.jammed) return jam(now_.moving.angle);
       }
       if (steps.found(root_cycle)) branch_ends = cycle_done() || branch_ends;
     } else if (outcome == Integrator::Outcome::stop) {
@@ -262,16 +265,17 @@ void CrankStartUp::slide() {
       branch_ends = true;
     } else {
       // Roots that the integrator may not see: a sign that was wrong from the start of the branch.
-      if (now_.branch.direction * now_.omega < -1e-9 * model_.speed_scale) branch_ends = true;
-      if (!model_.wingless && !now_.stuck && now_.branch.force * last_force_switch_ < -1e-8) {
-        now_.branch.force = -now_.branch.force;
-        now_.force_branch_known = true;
+      if (now_.direction * now_.moving.speed < -1e-9 * model_.speed_scale) branch_ends = true;
+      if (!model_.wingless && !now_.stuck && now_.force * last_force_switch_ < -1e-8) {
+        now_.force = -now_.force;
+        now_.force_known = true;
         branch_ends = true;
       }
-      if (model_.pitching && !now_.held && std::abs(now_.psi) > model_.vehicle.pitch.hinge.stop * (1.0 + 1e-9)) {
+      if (model_.indices.pitching && !now_.held &&
+          std::abs(now_.moving.pitch_angle) > model_.vehicle.pitch.hinge.stop * (1.0 + 1e-9)) {
         meet_or_leave_stop();
         branch_ends = true;
-        if (now_.jammed) return jam(now_.theta);
+        if (now_.jammed) return jam(now_.moving.angle);
       }
       if (!branch_ends && !now_.stuck && captured()) return;
     }
@@ -281,7 +285,7 @@ void CrankStartUp::slide() {
       stiff_ = result_.stiff = true;
       plain_.reset();
       with_quadratures_.reset();
-      now_.force_branch_known = true;
+      now_.force_known = true;
       return;
     }
   }
@@ -290,19 +294,19 @@ void CrankStartUp::slide() {
 void CrankStartUp::meet_or_leave_stop() {
   if (measuring_) add_variation();
   const double lost = now_.impact_loss;
-  model_.handle(CrankModel::stop);
+  model_.handle(TimeModel::stop);
   if (now_.impact_loss > lost) event(Kind::stop_impact);
   if (measuring_) add_variation();
 }
 
 void CrankStartUp::step_taken(Integrator& steps, double from) {
-  swing_low_ = std::min(swing_low_, now_.theta);
-  swing_high_ = std::max(swing_high_, now_.theta);
-  window_low_ = std::min(window_low_, now_.theta);
-  window_high_ = std::max(window_high_, now_.theta);
+  swing_low_ = std::min(swing_low_, now_.moving.angle);
+  swing_high_ = std::max(swing_high_, now_.moving.angle);
+  window_low_ = std::min(window_low_, now_.moving.angle);
+  window_high_ = std::max(window_high_, now_.moving.angle);
   track_inrush(steps, from);
   if (measuring_) track_extremes(steps, from);
-  if (measuring_ && model_.pitching) {
+  if (measuring_ && model_.indices.pitching) {
     pitching_.step_taken(model_, steps, from);
     const int last = options_.cycle_rows - 1;
     while (last > 0 && int(result_.cycle.size()) <= last) {
@@ -311,10 +315,10 @@ void CrankStartUp::step_taken(Integrator& steps, double from) {
       const double* state = steps.dense(std::min(measured_from_ + since, now_.t));
       const Motion<double> m = model_.motion(measured_from_ + since, state);
       result_.cycle.push_back(waveform_row(model_.vehicle, m, since, state[0] - measured_angle_, state[1],
-                                           stroke_angle(m.kinematics), state[model_.pitch_at()]));
+                                           stroke_angle(m.kinematics), state[model_.indices.pitch]));
     }
   }
-  recorder_.step_taken({now_.t, now_.theta, now_.omega, now_.i}, [&](double t) {
+  recorder_.step_taken({now_.t, now_.moving.angle, now_.moving.speed, now_.moving.current}, [&](double t) {
     const double* y = steps.dense(t);
     return TransientSample{t, y[0], y[1], model_.current_of(t, y)};
   });
@@ -323,11 +327,11 @@ void CrankStartUp::step_taken(Integrator& steps, double from) {
 void CrankStartUp::track_inrush(Integrator& steps, double from) {
   const auto slope = [&](double t) {
     double rates[5] = {};
-    if (!model_.inductive) rates[1] = steps.dense(t, 1)[1];
+    if (!model_.indices.inductive) rates[1] = steps.dense(t, 1)[1];
     return model_.current_slope(t, steps.dense(t), rates);
   };
-  recorder_.note_current(now_.t, now_.i);
-  if (now_.i < 0.9 * result_.inrush_current || slope(now_.t) >= 0.0 || slope(from) <= 0.0) return;
+  recorder_.note_current(now_.t, now_.moving.current);
+  if (now_.moving.current < 0.9 * result_.inrush_current || slope(now_.t) >= 0.0 || slope(from) <= 0.0) return;
   const auto rises = [&](double t) { return slope(t) > 0.0; };
   const auto narrow = [&](const Bracket<double>& b) { return b.after - b.before <= 1e-9 * (now_.t - from); };
   const double top = bisect(rises, from, now_.t, narrow).before;
@@ -338,13 +342,13 @@ void CrankStartUp::track_inrush(Integrator& steps, double from) {
 /// heavy rotor takes long steps, however the stroke bends within a few degrees of the crank.
 void CrankStartUp::track_extremes(Integrator& steps, double from) {
   constexpr double fine = 0.02;  // [rad]
-  const double turned = std::abs(now_.theta - steps.dense(from)[0]);
+  const double turned = std::abs(now_.moving.angle - steps.dense(from)[0]);
   raise_extremes(
       [&](double t) {
         const double* y = steps.dense(t);
-        Branch<double> branch;
-        const Motion<double> m = model_.motion(t, y, &branch);
-        return extreme_candidates(m, y[1], branch);
+        Mode<double> mode;
+        const Motion<double> m = model_.motion(t, y, &mode);
+        return extreme_candidates(m, y[1], mode);
       },
       from, now_.t, int(std::ceil(turned / fine)), extremes_);
 }

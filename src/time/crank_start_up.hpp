@@ -7,10 +7,10 @@
 #include <optional>
 #include <vector>
 
-#include "time/crank_model.hpp"
-#include "time/crank_pitch_samples.hpp"
 #include "time/integrator.hpp"
+#include "time/pitch_samples.hpp"
 #include "time/recorder.hpp"
+#include "time/time_model.hpp"
 #include "time/transient_tools.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/time/transient.hpp"
@@ -62,8 +62,8 @@ class CrankStartUp {
   double cycle_scatter(std::size_t cycles) const;
   void add_variation();
 
-  void event(Kind kind) { result_.events.push_back({now_.t, now_.theta, kind}); }
-  void sample() { recorder_.sample({now_.t, now_.theta, now_.omega, now_.i}); }
+  void event(Kind kind) { result_.events.push_back({now_.t, now_.moving.angle, kind}); }
+  void sample() { recorder_.sample({now_.t, now_.moving.angle, now_.moving.speed, now_.moving.current}); }
   bool out_of_budget();
   double stall_torque() const;
   bool stalls(double angle);
@@ -74,8 +74,8 @@ class CrankStartUp {
 
   TransientOptions options_;
   TransientResult result_;
-  CrankModel model_;
-  CrankModel::State& now_ = model_.now;
+  TimeModel model_;
+  TimeModel::State& now_ = model_.now;
   Recorder recorder_;
   bool done_ = false;
   bool stiff_ = false;
@@ -106,7 +106,7 @@ class CrankStartUp {
   double variation_ = 0.0, energy_mark_ = 0.0, motor_mark_ = 0.0, stored_mark_ = 0.0;
   CycleIntegrals<double> impulses_mark_{};
   CycleExtremes<double> extremes_{};
-  CrankPitchSamples pitching_;
+  PitchSamples pitching_;
   double measured_from_ = 0.0, measured_angle_ = 0.0;  // time and crank angle
   double stuck_until_ =
       std::numeric_limits<double>::infinity();  ///< what a crank has not left by then, it never leaves

@@ -1,16 +1,18 @@
 #include "time/direct_transient.hpp"
 
+#include <array>
 #include <cmath>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <utility>
 
-#include "time/direct_model.hpp"
 #include "time/integrator.hpp"
 #include "time/model_problem.hpp"
-#include "time/period_averages.hpp"
-#include "time/pitch_direct_model.hpp"
+#include "time/pitch_samples.hpp"
 #include "time/recorder.hpp"
+#include "time/time_model.hpp"
 #include "time/transient_tools.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/vehicle/motion.hpp"
@@ -26,8 +28,6 @@ constexpr int creep_periods = 8;         // of ever shorter slips in one directi
 constexpr double nearly_settled = 1e-4;  // off the orbit, where the steps allowed end before the tolerance is reached
 constexpr int contraction_periods = 4;   // over which the contraction is taken: complex multipliers make it uneven
 
-/// Of a DirectModel or a PitchDirectModel.
-template <class Model>
 class DirectStartUp {
  public:
   DirectStartUp(const Vehicle<double>& vehicle, const TransientOptions& options);
@@ -35,7 +35,7 @@ class DirectStartUp {
   TransientResult run();
 
  private:
-  void root_values(double t, const double* y, double* values, bool measuring) const;
+  std::span<const TimeModel::Indicator> watched(bool measuring) const;
   std::unique_ptr<Integrator> integrator(bool measuring);
 
   void advance(double until);
@@ -44,26 +44,28 @@ class DirectStartUp {
   void add_variation();
   void period_done();
   void settle(double closure, double change);
-  void interrupt();
+  void changing(const std::function<void()>& change);
+  double largest_torque() const;
+  bool wings_are_still() const;
   bool rests_for_good();
   bool creeps_to_rest();
   void begin_measuring();
   void take_metrics();
   bool out_of_budget();
   void give_up(StatusEvidence why);
-  void event(Event kind) { result_.events.push_back({now_.t, now_.y[0], kind}); }
+  void event(Event kind) { result_.events.push_back({now_.t, now_.moving.angle, kind}); }
 
   const TransientOptions& options_;
   TransientResult result_;
   Recorder recorder_{options_, result_};
-  Model model_;
-  typename Model::State& now_ = model_.now;
+  TimeModel model_;
+  TimeModel::State& now_ = model_.now;
+  const double period_ = 1.0 / model_.vehicle.drive_frequency;
   bool stiff_ = false, done_ = false;
   double relative_tolerance_ = 1e-9, tightest_ = 1e-13;
-  static constexpr int count = quadrature_count + Model::other_quadratures;
-  double quadrature_scale_[count] = {};
+  double quadrature_scale_[quadrature_count] = {};
 
-  double q_[count] = {};
+  double q_[quadrature_count] = {};
   std::unique_ptr<Integrator> plain_, with_quadratures_;
 
   bool measuring_ = false;
@@ -79,19 +81,20 @@ class DirectStartUp {
   double stroke_before_ = 0.0;
   double travel_[2] = {}, last_travel_ = infinity;  ///< of this period: backwards, forwards; the longer of the last
   int creeping_ = 0;                                ///< periods so far
-  double before_[5] = {};
-  PeriodAverages<Model> reading_;
+  std::array<double, max_unknowns> before_{};
+  CycleIntegrals<double> impulses_mark_{};
+  PitchSamples pitching_;
+  double stuck_until_ = infinity;  ///< what a shaft has not left by then, it never leaves
   std::vector<double> changes_;
 };
 
-template <class Model>
-DirectStartUp<Model>::DirectStartUp(const Vehicle<double>& vehicle, const TransientOptions& options)
-    : options_(options), model_(vehicle) {
+DirectStartUp::DirectStartUp(const Vehicle<double>& vehicle, const TransientOptions& options)
+    : options_(options), model_(vehicle, {}) {
   require(options.tolerance >= 1e-11 && options.tolerance <= 1e-2, "transient.tolerance",
           "must lie between 1e-11 and 1e-2", "1", options.tolerance);
-  model_.start_from(options);
-  const auto typical = model_.typical();
-  const double speed_scale = typical[1], current_scale = typical.back();
+  model_.start(
+      {options.crank_angle, options.crank_speed, options.current, options.pitch_angle, options.pitch_velocity});
+  const double speed_scale = model_.speed_scale, current_scale = model_.current_scale;
   const Motor<double>& m = model_.vehicle.motor;
   stiff_ = model_.stiff();
   result_.stiff = stiff_;
@@ -111,52 +114,53 @@ DirectStartUp<Model>::DirectStartUp(const Vehicle<double>& vehicle, const Transi
       default: return power;
     }
   };
-  for (int k = 0; k < quadrature_count; ++k) quadrature_scale_[k] = model_.period * size(quadratures[k]);
-  model_.other_scales(power, quadrature_scale_ + quadrature_count);
+  for (int k = 0; k < quadrature_count; ++k) quadrature_scale_[k] = period_ * size(quadratures[k]);
 }
 
-template <class Model>
-void DirectStartUp<Model>::root_values(double t, const double* y, double* values, bool measuring) const {
-  const auto indicators = model_.indicators(t, y, measuring);
-  std::copy_n(indicators.begin(), measuring ? indicators.size() : Model::plain_indicators, values);
+/// Those of the model's indicators that end a piece of the motion, then, in a period that is measured, the others.
+std::span<const TimeModel::Indicator> DirectStartUp::watched(bool measuring) const {
+  using enum TimeModel::Indicator;
+  static constexpr TimeModel::Indicator all[] = {standstill, force, stop, reversal, turn, stored_moment};
+  // Under the pitch law the loads hardly bend where the stroke turns back.
+  return std::span(all).first(measuring ? 6 : model_.indices.pitching ? 5 : 2);
 }
 
-template <class Model>
-std::unique_ptr<Integrator> DirectStartUp<Model>::integrator(bool measuring) {
+std::unique_ptr<Integrator> DirectStartUp::integrator(bool measuring) {
   IntegratorProblem p = measuring ? problem_with_quadratures(model_, relative_tolerance_, quadrature_scale_)
                                   : problem_of(model_, relative_tolerance_);
   p.stiff = stiff_;
-  p.roots = int(measuring ? std::size_t(Model::indicator_count) : Model::plain_indicators);
+  p.roots = int(watched(measuring).size());
   p.rates = [this, measuring](double t, const double* y, double* dy) {
     ++result_.rate_evaluations;
     return model_.rates(t, y, dy, measuring);
   };
   p.root_functions = [this, measuring](double t, const double* y, double* values) {
-    root_values(t, y, values, measuring);
+    const auto indicators = model_.indicators(t, y);
+    for (const TimeModel::Indicator which : watched(measuring)) *values++ = indicators[which];
   };
-  p.longest_step = Model::longest_part * model_.period;
+  p.longest_step = period_ / (model_.indices.pitching ? 16.0 : 4.0);
   return make_integrator(options_.integrator, std::move(p));
 }
 
 /// Integrates to an event or to the time `until`.
-template <class Model>
-void DirectStartUp<Model>::advance(double until) {
-  if (now_.stuck) until = std::min(until, now_.t + model_.period / sticking_pieces);
+void DirectStartUp::advance(double until) {
+  changing([&] { model_.begin_piece(); });
+  if (now_.stuck) until = std::min(until, now_.t + period_ / sticking_pieces);
   if (until - now_.t < 1e-13 * until) {
     now_.t = until;
     return;
   }
-  if (measuring_) add_variation();
-  model_.resume();
-  if (measuring_) add_variation();
   std::unique_ptr<Integrator>& slot = measuring_ ? with_quadratures_ : plain_;
   if (!slot) slot = integrator(measuring_);
   Integrator& steps = *slot;
   double* y = steps.state();
-  std::copy(now_.y, now_.y + model_.coupled, y);
-  if (measuring_) std::copy(q_, q_ + count, y + model_.coupled);
-  auto directions = model_.directions();
-  if (!steps.restart(now_.t, directions.data(), std::min(model_.period, until - now_.t), until)) {
+  model_.unknowns(y);
+  if (measuring_) std::copy(q_, q_ + quadrature_count, y + model_.coupled);
+  const auto which_way = model_.directions();
+  const auto roots = watched(measuring_);
+  int directions[TimeModel::indicator_count];
+  for (std::size_t k = 0; k < roots.size(); ++k) directions[k] = which_way[roots[k]];
+  if (!steps.restart(now_.t, directions, std::min(period_, until - now_.t), until)) {
     give_up({.kind = Evidence::integrator_not_started});
     return;
   }
@@ -168,134 +172,167 @@ void DirectStartUp<Model>::advance(double until) {
         relative_tolerance_ = tightest_ = 10.0 * relative_tolerance_;
         return;
       }
-      give_up({.kind = Evidence::integrator_failed, .angle = now_.y[0], .time = now_.t});
+      give_up({.kind = Evidence::integrator_failed, .angle = now_.moving.angle, .time = now_.t});
       return;
     }
-    now_.t = steps.time();
-    std::copy(y, y + model_.coupled, now_.y);
-    if (measuring_) std::copy(y + model_.coupled, y + model_.coupled + count, q_);
+    model_.set(steps.time(), y);
+    if (measuring_) std::copy(y + model_.coupled, y + model_.coupled + quadrature_count, q_);
     step_taken(steps, from);
     if (outcome == Integrator::Outcome::stop) return;
+    bool piece_ends = false;
     if (outcome == Integrator::Outcome::root) {
       if (measuring_) add_variation();
-      if (steps.found(Model::interruption)) {
-        interrupt();
-        return;
+      for (std::size_t k = 0; k < roots.size(); ++k) {
+        const TimeModel::Indicator which = roots[k];
+        const bool ends = which == TimeModel::standstill || which == TimeModel::force || which == TimeModel::stop;
+        if (!ends || !steps.found(int(k))) continue;
+        const std::optional<Event> kind = model_.event_at(which);
+        changing([&] { model_.handle(which); });
+        if (kind) event(*kind);
+        piece_ends = true;
       }
-    } else if (model_.branch_lost()) {
+    } else {
       // A reversal or a stop that the integrator did not see.
-      interrupt();
-      return;
+      changing([&] { piece_ends = model_.branch_lost(); });
     }
-    if (out_of_budget()) return;
+    if (piece_ends || out_of_budget()) return;
   }
 }
 
-template <class Model>
-WaveformRow DirectStartUp<Model>::row(double t, const double* y) const {
-  const Motion<double> m = model_.motion(t, y);
-  return waveform_row(model_.vehicle, m, t - double(result_.cycles) * model_.period, y[0], m.stroke_velocity, y[0],
-                      Model::pitch_angle(y));
+/// Changes the model, with what that adds to variation and events.
+void DirectStartUp::changing(const std::function<void()>& change) {
+  if (measuring_) add_variation();
+  const double lost = now_.impact_loss;
+  change();
+  if (now_.impact_loss > lost) event(Event::stop_impact);
+  if (measuring_) add_variation();
 }
 
-template <class Model>
-void DirectStartUp<Model>::step_taken(Integrator& steps, double from) {
-  swing_ = std::max(swing_, std::abs(now_.y[0]));
-  travel_[now_.y[0] > stroke_before_] += std::abs(now_.y[0] - stroke_before_);
-  stroke_before_ = now_.y[0];
-  recorder_.note_current(now_.t, std::abs(model_.current_of(now_.t, now_.y)));
+WaveformRow DirectStartUp::row(double t, const double* y) const {
+  const Motion<double> m = model_.motion(t, y);
+  return waveform_row(model_.vehicle, m, t - double(result_.cycles) * period_, y[0], m.stroke_velocity, y[0],
+                      model_.indices.pitching ? y[model_.indices.pitch] : absent);
+}
+
+void DirectStartUp::step_taken(Integrator& steps, double from) {
+  swing_ = std::max(swing_, std::abs(now_.moving.angle));
+  travel_[now_.moving.angle > stroke_before_] += std::abs(now_.moving.angle - stroke_before_);
+  stroke_before_ = now_.moving.angle;
+  recorder_.note_current(now_.t, std::abs(now_.moving.current));
   if (measuring_) {
     raise_extremes(
         [&](double t) {
           const double* y = steps.dense(t);
-          const Motion<double> m = model_.motion(t, y);
-          return extreme_candidates(m, m.stroke_velocity, model_.branch_at(y), y[0]);
+          Mode<double> mode;
+          const Motion<double> m = model_.motion(t, y, &mode);
+          return extreme_candidates(m, m.stroke_velocity, mode, y[0]);
         },
         from, now_.t, 4, extremes_);
-    reading_.step_taken(model_, steps, from);
+    if (model_.indices.pitching) pitching_.step_taken(model_, steps, from);
     const int last = options_.cycle_rows - 1;
     while (last > 0 && int(result_.cycle.size()) <= last) {
-      const double row_time = model_.period * (result_.cycles + double(result_.cycle.size()) / last);
-      if (row_time > now_.t + 1e-12 * model_.period) break;
+      const double row_time = period_ * (result_.cycles + double(result_.cycle.size()) / last);
+      if (row_time > now_.t + 1e-12 * period_) break;
       result_.cycle.push_back(row(std::min(row_time, now_.t), steps.dense(std::min(row_time, now_.t))));
     }
   }
-  recorder_.step_taken({now_.t, now_.y[0], now_.y[1], model_.current_of(now_.t, now_.y)}, [&](double t) {
+  recorder_.step_taken({now_.t, now_.moving.angle, now_.moving.speed, now_.moving.current}, [&](double t) {
     const double* y = steps.dense(t);
     return TransientSample{t, y[0], y[1], model_.current_of(t, y)};
   });
 }
 
-template <class Model>
-void DirectStartUp<Model>::add_variation() {
+void DirectStartUp::add_variation() {
   const double energy = model_.wing_energy();
   variation_ += std::abs(energy - energy_mark_);
   energy_mark_ = energy;
 }
 
-template <class Model>
-void DirectStartUp<Model>::begin_measuring() {
+void DirectStartUp::begin_measuring() {
   measuring_ = true;
   std::fill(std::begin(q_), std::end(q_), 0.0);
   extremes_.fill(-infinity);
   variation_ = 0.0;
   energy_mark_ = model_.wing_energy();
   result_.cycle.clear();
-  reading_.begin(model_);
+  impulses_mark_ = now_.impulses;
+  pitching_.begin(model_);
 }
 
-/// What ends a piece of the motion: standstill, breakaway, a stop.
-template <class Model>
-void DirectStartUp<Model>::interrupt() {
-  if (measuring_) add_variation();
-  if (const auto kind = model_.interrupt()) event(*kind);
-  if (measuring_) add_variation();
-}
-
-template <class Model>
-void DirectStartUp<Model>::take_metrics() {
+void DirectStartUp::take_metrics() {
   add_variation();
   CycleIntegrals<double>& integrals = result_.integrals;
-  for (int k = 0; k < quadrature_count; ++k) integrals[std::size_t(quadratures[k])] = q_[k];
-  integrals[std::size_t(Integral::time)] = model_.period;
+  for (int k = 0; k < quadrature_count; ++k) {
+    const auto which = std::size_t(quadratures[k]);
+    integrals[which] = q_[k] + now_.impulses[which] - impulses_mark_[which];
+  }
+  integrals[std::size_t(Integral::time)] = period_;
   integrals[std::size_t(Integral::reactive_work)] = variation_;
-  reading_.add_impulses(model_, integrals);
   result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
   result_.averaged_cycles = 1;
-  reading_.finish(model_, q_ + quadrature_count, *result_.metrics);
+  if (model_.indices.pitching) pitching_.finish(model_, now_.t - period_, now_.t, 1, *result_.metrics);
 }
 
-/// True, with the decision, where nothing moves the shaft any more.
-template <class Model>
-bool DirectStartUp<Model>::rests_for_good() {
-  const auto typical = model_.typical();
-  const bool no_drive = model_.vehicle.voltage == 0.0 && std::abs(now_.y[1]) < 1e-9 * typical[1] &&
-                        std::abs(now_.y[0]) < 1e-9 * typical[0] && swing_ < 1e-9 * typical[0];
-  const double held = now_.stuck ? model_.largest_net_torque() : infinity;
-  if (held > model_.holding_torque && !no_drive) return false;
+/// The largest torque of the motor at rest from now on [N m]: its current is a sine and what remains of its start.
+double DirectStartUp::largest_torque() const {
+  const Motor<double>& m = model_.vehicle.motor;
+  const double w = two_pi * model_.vehicle.drive_frequency;
+  const double Z = std::hypot(m.armature_resistance, w * m.armature_inductance);
+  const double lag = std::atan2(w * m.armature_inductance, m.armature_resistance);
+  const double remains = model_.indices.inductive
+                             ? std::abs(now_.moving.current - model_.vehicle.voltage / Z * std::sin(w * now_.t - lag))
+                             : 0.0;
+  return model_.drive_torque + m.torque_constant * remains;
+}
+
+/// True, with the decision, where nothing moves the shaft any more. Wings that still pitch shake it: they can only come
+/// to rest, so that a shaft which stands long enough does so for good.
+bool DirectStartUp::rests_for_good() {
+  const bool no_drive = model_.vehicle.voltage == 0.0 && std::abs(now_.moving.speed) < 1e-9 * model_.speed_scale &&
+                        std::abs(now_.moving.angle) < 1e-9 * model_.angle_scale && swing_ < 1e-9 * model_.angle_scale &&
+                        wings_are_still();
+  if (!now_.stuck) stuck_until_ = infinity;
+  if (!now_.stuck && !no_drive) return false;
+  const StandingTorques<double> torques = model_.standing_torques(now_.moving.angle);
+  const double load = 0.5 * (torques.low + torques.high), hold = 0.5 * (torques.high - torques.low);
+  const double torque = largest_torque() + std::abs(load);
+  if (now_.stuck && !no_drive) {
+    if (torque > hold && model_.wings_rest()) return false;
+    if (!model_.wings_rest()) {
+      const PitchingWings<double>& wings = model_.vehicle.pitch;
+      const double own = two_pi * std::sqrt((wings.pitch_inertia + wings.air.pp) / wings.hinge.stiffness);
+      if (stuck_until_ == infinity) stuck_until_ = now_.t + 3.0 * own + 2.0 * period_ + 20.0 * model_.electrical_time;
+      if (now_.t < stuck_until_) return false;
+    }
+  }
   done_ = true;
   result_.settled = true;
   result_.status = FlappingStatus::stalled;
   result_.time_to_steady = now_.t;
-  result_.lock_angle = now_.y[0];
-  result_.torque_margin = now_.stuck ? model_.holding_torque - held : 0.0;
+  result_.lock_angle = now_.moving.angle;
+  result_.torque_margin = now_.stuck ? std::max(0.0, hold - torque) : 0.0;
   if (now_.stuck) {
     result_.evidence = {
-        .kind = Evidence::held_shaft, .angle = now_.y[0], .torque = held, .friction_torque = model_.holding_torque};
+        .kind = Evidence::held_shaft, .angle = now_.moving.angle, .torque = torque, .friction_torque = hold};
   } else {
     result_.evidence = {.kind = Evidence::no_voltage};
   }
   return true;
 }
 
+/// Of wings that pitch: as nearly as the stroke has to be where nothing drives it.
+bool DirectStartUp::wings_are_still() const {
+  return !model_.indices.pitching || (std::abs(now_.moving.pitch_angle) < 1e-9 * model_.pitch_scale &&
+                                      std::abs(now_.moving.pitch_velocity) < 1e-9 * model_.pitch_velocity_scale);
+}
+
 /// True, with the decision, where the drive alone cannot break the shaft away and the springs let it creep towards an
 /// angle of rest: from standstill to standstill the angle is a monotone map of itself, and slips in one direction end
 /// where there are none.
-template <class Model>
-bool DirectStartUp<Model>::creeps_to_rest() {
+bool DirectStartUp::creeps_to_rest() {
   const double travel = std::max(travel_[0], travel_[1]), back = std::min(travel_[0], travel_[1]);
   const bool creeps =
-      now_.stuck && model_.drive_torque <= model_.holding_torque && travel < last_travel_ && back <= 1e-6 * travel;
+      now_.stuck && model_.drive_torque <= model_.constant_friction && travel < last_travel_ && back <= 1e-6 * travel;
   creeping_ = creeps ? creeping_ + 1 : 0;
   last_travel_ = travel;
   travel_[0] = travel_[1] = 0.0;
@@ -304,51 +341,55 @@ bool DirectStartUp<Model>::creeps_to_rest() {
   result_.settled = true;
   result_.status = FlappingStatus::stalled;
   result_.time_to_steady = now_.t;
-  result_.lock_angle = now_.y[0];
-  result_.torque_margin = model_.holding_torque - model_.drive_torque;
+  result_.lock_angle = now_.moving.angle;
+  result_.torque_margin = model_.constant_friction - model_.drive_torque;
   result_.evidence = {.kind = Evidence::creeping_shaft,
-                      .angle = now_.y[0],
+                      .angle = now_.moving.angle,
                       .torque = model_.drive_torque,
-                      .friction_torque = model_.holding_torque,
+                      .friction_torque = model_.constant_friction,
                       .travel = travel};
   return true;
 }
 
 /// The decision that it flaps, with the metrics taken: how far periods are from the orbit, and from each other.
-template <class Model>
-void DirectStartUp<Model>::settle(double closure, double change) {
+void DirectStartUp::settle(double closure, double change) {
   done_ = true;
   result_.closure = closure;
   result_.settled = true;
   result_.status = FlappingStatus::flapping;
   std::size_t first = swings_.size();
   while (first > 0 && std::abs(swings_[first - 1] / swings_.back() - 1.0) <= 1e-2) --first;
-  result_.time_to_steady = double(first) * model_.period;
-  model_.put_state(result_);
+  result_.time_to_steady = double(first) * period_;
+  result_.stroke_angle = now_.moving.angle;
+  result_.crank_speed = now_.moving.speed;
+  result_.current = now_.moving.current;
+  result_.pitch_angle = now_.moving.pitch_angle;
+  result_.pitch_velocity = now_.moving.pitch_velocity;
   result_.evidence = {.kind = Evidence::settled_periods,
                       .frequency = model_.vehicle.drive_frequency,
                       .time = result_.time_to_steady,
                       .change = change,
                       .cycles = result_.cycles};
-  reading_.add_to(result_.evidence, model_);
+  if (model_.indices.pitching) pitching_.add_to(result_.evidence, model_);
 }
 
-template <class Model>
-void DirectStartUp<Model>::period_done() {
+void DirectStartUp::period_done() {
   ++result_.cycles;
   event(Event::revolution);
   swings_.push_back(swing_);
-  swing_ = std::abs(now_.y[0]);
+  swing_ = std::abs(now_.moving.angle);
   if (rests_for_good() || creeps_to_rest()) return;
 
   const auto scale = model_.typical();
+  std::array<double, max_unknowns> y{};
+  model_.unknowns(y.data());
   double change = 0.0;
-  for (int n = 0; n < model_.coupled; ++n) {
+  for (std::size_t n = 0; n < model_.indices.count; ++n) {
     // Without springs nothing returns the shaft to any angle.
     if (n == 0 && !(model_.vehicle.spring.stiffness > 0.0)) continue;
-    change = std::max(change, std::abs(now_.y[n] - before_[n]) / scale[std::size_t(n)]);
+    change = std::max(change, std::abs(y[n] - before_[n]) / scale[n]);
   }
-  std::copy(now_.y, now_.y + model_.coupled, before_);
+  before_ = y;
   changes_.push_back(change);
   const std::size_t n = changes_.size();
   double rate = 1.0;
@@ -400,8 +441,7 @@ void DirectStartUp<Model>::period_done() {
   }
 }
 
-template <class Model>
-bool DirectStartUp<Model>::out_of_budget() {
+bool DirectStartUp::out_of_budget() {
   ++result_.steps;
   const auto as_good_as_steps_allow = [&] {
     return last_metrics_ && last_off_ < nearly_settled &&
@@ -423,8 +463,7 @@ bool DirectStartUp<Model>::out_of_budget() {
   return done_;
 }
 
-template <class Model>
-void DirectStartUp<Model>::give_up(StatusEvidence why) {
+void DirectStartUp::give_up(StatusEvidence why) {
   done_ = true;
   result_.settled = false;
   result_.status = FlappingStatus::undecided;
@@ -433,16 +472,15 @@ void DirectStartUp<Model>::give_up(StatusEvidence why) {
   result_.evidence = std::move(why);
 }
 
-template <class Model>
-TransientResult DirectStartUp<Model>::run() {
+TransientResult DirectStartUp::run() {
   model_.begin_piece();
-  std::copy(now_.y, now_.y + model_.coupled, before_);
-  swing_ = std::abs(now_.y[0]);
-  stroke_before_ = now_.y[0];
-  recorder_.start(std::abs(model_.current_of(0.0, now_.y)));
-  recorder_.sample({now_.t, now_.y[0], now_.y[1], model_.current_of(now_.t, now_.y)});
+  model_.unknowns(before_.data());
+  swing_ = std::abs(now_.moving.angle);
+  stroke_before_ = now_.moving.angle;
+  recorder_.start(std::abs(now_.moving.current));
+  recorder_.sample({now_.t, now_.moving.angle, now_.moving.speed, now_.moving.current});
   while (!done_) {
-    const double end = double(result_.cycles + 1) * model_.period;
+    const double end = double(result_.cycles + 1) * period_;
     const double until = options_.max_time > 0.0 ? std::min(end, options_.max_time) : end;
     advance(until);
     if (done_) break;
@@ -455,15 +493,14 @@ TransientResult DirectStartUp<Model>::run() {
     }
   }
   result_.end_time = now_.t;
-  result_.end_crank_angle = now_.y[0];
+  result_.end_crank_angle = now_.moving.angle;
   return std::move(result_);
 }
 
 }  // namespace
 
 TransientResult simulate_direct_start_up(const Vehicle<double>& vehicle, const TransientOptions& options) {
-  if (pitches(vehicle)) return DirectStartUp<PitchDirectModel>(vehicle, options).run();
-  return DirectStartUp<DirectModel>(vehicle, options).run();
+  return DirectStartUp(vehicle, options).run();
 }
 
 }  // namespace wingbeat::detail

@@ -1,4 +1,4 @@
-// The equations of a model in time (CrankModel, DirectModel) as an integrator takes them.
+// The equations of a model in time as an integrator takes them.
 #pragma once
 
 #include <algorithm>
@@ -6,17 +6,17 @@
 #include <cstddef>
 
 #include "time/integrator.hpp"
+#include "time/time_model.hpp"
 #include "time/transient_tools.hpp"
 
 namespace wingbeat::detail {
 
 /// The model's unknowns, all its indicators being roots. `relative`: admissible error of a step. Model and tolerance
 /// are referred to and may change between steps.
-template <class Model>
-IntegratorProblem problem_of(const Model& model, const double& relative) {
+inline IntegratorProblem problem_of(const TimeModel& model, const double& relative) {
   IntegratorProblem p;
   p.size = p.coupled = model.coupled;
-  p.roots = int(Model::indicator_count);
+  p.roots = int(TimeModel::indicator_count);
   p.stiff = model.stiff();
   p.rates = [&](double t, const double* y, double* dy) { return model.rates(t, y, dy, false); };
   p.root_functions = [&](double t, const double* y, double* values) {
@@ -30,16 +30,15 @@ IntegratorProblem problem_of(const Model& model, const double& relative) {
   return p;
 }
 
-/// The problem of a model with `quadratures` and what else the model integrates behind the unknowns, which are of the
-/// sizes `scale`.
-template <class Model, std::size_t count>
-IntegratorProblem problem_with_quadratures(const Model& model, const double& relative, const double (&scale)[count]) {
+/// The problem of a model with `quadratures` behind the unknowns, which are of the sizes `scale`.
+inline IntegratorProblem problem_with_quadratures(const TimeModel& model, const double& relative,
+                                                  const double (&scale)[quadrature_count]) {
   IntegratorProblem p = problem_of(model, relative);
-  p.size += int(count);
+  p.size += quadrature_count;
   p.rates = [&](double t, const double* y, double* dy) { return model.rates(t, y, dy, true); };
   p.tolerated = [&](const double* y, double* errors) {
     model.tolerated(relative, y, errors);
-    for (int k = model.coupled; k < model.coupled + int(count); ++k) {
+    for (int k = model.coupled; k < model.coupled + quadrature_count; ++k) {
       errors[k] = relative * (std::abs(y[k]) + 0.01 * scale[k - model.coupled]);
     }
   };

@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "time/integrator.hpp"
-#include "time/pitch_direct_model.hpp"
 #include "time/transient_tools.hpp"
 #include "wingbeat/core/cancellation.hpp"
 #include "wingbeat/core/root.hpp"
@@ -18,8 +17,6 @@ namespace {
 
 constexpr int max_attempts = 400;  // to take one step
 constexpr int looks = 4;           // within a step, for root functions that change sign twice
-
-constexpr int pitching_quadratures = quadrature_count + PitchDirectModel::other_quadratures;
 
 /// 0, 1, ... Q - 1
 template <std::size_t... q>
@@ -286,11 +283,6 @@ class OwnIntegrator : public Integrator {
 }  // namespace
 
 std::unique_ptr<Integrator> own_integrator(IntegratorProblem problem) {
-  const int quadratures = problem.size - problem.coupled;
-  if (quadratures == pitching_quadratures) {
-    if (problem.coupled == 4) return std::make_unique<OwnIntegrator<4, pitching_quadratures>>(std::move(problem));
-    return std::make_unique<OwnIntegrator<5, pitching_quadratures>>(std::move(problem));
-  }
   switch (problem.coupled) {
     case 2: return std::make_unique<OwnIntegrator<2, quadrature_count>>(std::move(problem));
     case 3: return std::make_unique<OwnIntegrator<3, quadrature_count>>(std::move(problem));

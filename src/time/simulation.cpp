@@ -5,12 +5,9 @@
 #include <stdexcept>
 #include <type_traits>
 #include <utility>
-#include <variant>
 
-#include "time/crank_model.hpp"
-#include "time/direct_model.hpp"
-#include "time/pitch_direct_model.hpp"
 #include "time/simulation.hpp"
+#include "time/time_model.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/motion.hpp"
@@ -18,25 +15,7 @@
 namespace wingbeat {
 namespace {
 
-using AnyTimeModel = std::variant<detail::CrankModel, detail::DirectModel, detail::PitchDirectModel>;
-
-AnyTimeModel time_model_of(const Vehicle<double>& vehicle, const Supply<double>& supply) {
-  if (!drive_of(vehicle).alternating) return detail::CrankModel(vehicle, supply);
-  if (pitches(vehicle)) return detail::PitchDirectModel(vehicle);
-  return detail::DirectModel(vehicle);
-}
-
-void start_model(detail::CrankModel& model, const SimulationOptions& o) {
-  model.start(o.angle, o.speed, o.current, o.pitch_angle, o.pitch_velocity);
-}
-void start_model(detail::DirectModel& model, const SimulationOptions& o) { model.start(o.angle, o.speed, o.current); }
-void start_model(detail::PitchDirectModel& model, const SimulationOptions& o) {
-  model.start({o.angle, o.speed, o.pitch_angle, o.pitch_velocity, o.current});
-}
-
-/// Highest voltage of what is in the model's own supply [V].
-double supply_voltage(const detail::CrankModel& model) { return model.supply.voltage; }
-double supply_voltage(const detail::DrivenShaft& model) { return model.vehicle.voltage; }
+using detail::TimeModel;
 
 /// Turns of a crank that are done.
 double turns_at(double theta) { return std::floor(theta / two_pi); }
@@ -46,41 +25,36 @@ struct EventWatch {
   std::vector<TransientEvent> events;
   const StepOptions& options;
 
-  template <class Model>
-  std::optional<double> stepped(const Model& model, detail::Integrator& steps, double from) {
+  std::optional<double> stepped(const TimeModel& model, detail::Integrator& steps, double from) {
     if (options.check) options.check();
-    if constexpr (std::is_same_v<Model, detail::CrankModel>) {
-      const auto theta = [&](double t) { return steps.dense(t)[0]; };
-      const double before = theta(from), turns = turns_at(before);
-      if (turns_at(model.now.theta) <= turns) return std::nullopt;
-      const auto short_of = [&](double t) { return turns_at(theta(t)) <= turns; };
-      const double short_by = turns + 1.0 - before / two_pi, beyond = turns + 1.0 - model.now.theta / two_pi;
-      const double after = beyond < 0.0 ? find_zero([&](double t) { return turns + 1.0 - theta(t) / two_pi; }, from,
-                                                    short_by, model.now.t, beyond, 4e-16 * model.now.t)
-                                              .after
-                                        : bisect(short_of, from, model.now.t).after;
-      events.push_back({after, theta(after), TransientEvent::Kind::revolution});
-      if (options.until_event == TransientEvent::Kind::revolution) return after;
-    }
+    if (model.direct) return std::nullopt;
+    const auto theta = [&](double t) { return steps.dense(t)[0]; };
+    const double before = theta(from), turns = turns_at(before), theta_now = model.now.moving.angle;
+    if (turns_at(theta_now) <= turns) return std::nullopt;
+    const auto short_of = [&](double t) { return turns_at(theta(t)) <= turns; };
+    const double short_by = turns + 1.0 - before / two_pi, beyond = turns + 1.0 - theta_now / two_pi;
+    const double after = beyond < 0.0 ? find_zero([&](double t) { return turns + 1.0 - theta(t) / two_pi; }, from,
+                                                  short_by, model.now.t, beyond, 4e-16 * model.now.t)
+                                            .after
+                                      : bisect(short_of, from, model.now.t).after;
+    events.push_back({after, theta(after), TransientEvent::Kind::revolution});
+    if (options.until_event == TransientEvent::Kind::revolution) return after;
     return std::nullopt;
   }
-  bool happened(const auto& model, TransientEvent::Kind kind) {
-    double y[5];
-    model.unknowns(y);
-    events.push_back({model.now.t, y[0], kind});
+  bool happened(const TimeModel& model, TransientEvent::Kind kind) {
+    events.push_back({model.now.t, model.now.moving.angle, kind});
     return options.until_event == kind;
   }
 };
 
 /// Leaves the model where it was where an exception ends what is done to it.
-template <class Model>
 struct BackUnlessDone {
-  explicit BackUnlessDone(Model& restored) : model(restored), before(restored.now) {}
+  explicit BackUnlessDone(TimeModel& restored) : model(restored), before(restored.now) {}
   ~BackUnlessDone() {
     if (!done) model.now = before;
   }
-  Model& model;
-  typename Model::State before;
+  TimeModel& model;
+  TimeModel::State before;
   bool done = false;
 };
 
@@ -95,18 +69,15 @@ std::vector<std::string> time_state_names(const Vehicle<double>& vehicle) {
 }
 
 struct Simulation::Model {
-  AnyTimeModel any;
+  TimeModel in_time;
   SimulationOptions options;
   std::vector<double> times{}, voltages{};  ///< samples that command the voltage
   double scaled_to = 0.0;                   ///< [V]
 
   void start() {
-    std::visit(
-        [&](auto& model) {
-          start_model(model, options);
-          scaled_to = supply_voltage(model);
-        },
-        any);
+    const SimulationOptions& o = options;
+    in_time.start({o.angle, o.speed, o.current, o.pitch_angle, o.pitch_velocity});
+    scaled_to = in_time.supply.voltage;
   }
   /// The line through the samples that holds from the time t on, and the time until which it does.
   double command_line(double t, std::function<double(double)>& line) const {
@@ -123,7 +94,7 @@ struct Simulation::Model {
 };
 
 Simulation::Simulation(const Vehicle<double>& vehicle, const Supply<double>& supply, const SimulationOptions& options)
-    : model_(new Model{time_model_of(vehicle, supply), options}) {
+    : model_(new Model{TimeModel(vehicle, supply), options}) {
   if (!(options.tolerance >= 1e-12 && options.tolerance <= 1e-2)) {
     throw ParameterError("tolerance", "must be a number between 1e-12 and 1e-2");
   }
@@ -142,54 +113,25 @@ Simulation& Simulation::operator=(const Simulation& other) {
 Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
-double Simulation::time() const {
-  return std::visit([](const auto& model) { return model.now.t; }, model_->any);
-}
+double Simulation::time() const { return model_->in_time.now.t; }
 
-std::vector<std::string> Simulation::state_names() const {
-  return std::visit([](const auto& model) { return time_state_names(model.vehicle); }, model_->any);
-}
+std::vector<std::string> Simulation::state_names() const { return time_state_names(model_->in_time.vehicle); }
 
 std::vector<double> Simulation::state() const {
-  return std::visit(
-      [](const auto& model) {
-        double y[5];
-        model.unknowns(y);
-        std::vector<double> numbers(y, y + model.coupled);
-        // Behind the pitch, where a direct drive keeps its current.
-        using M = std::remove_cvref_t<decltype(model)>;
-        if (std::is_same_v<M, detail::PitchDirectModel> && model.inductive) {
-          std::rotate(numbers.begin() + 2, numbers.begin() + 4, numbers.end());
-        }
-        return numbers;
-      },
-      model_->any);
+  std::vector<double> numbers(model_->in_time.indices.count);
+  model_->in_time.unknowns(numbers.data());
+  return numbers;
 }
 
 WaveformRow Simulation::now() const {
-  return std::visit(
-      [](const auto& model) {
-        double y[5];
-        model.unknowns(y);
-        double pitch_angle = absent;
-        double stroke = y[0];
-        if constexpr (std::is_same_v<std::remove_cvref_t<decltype(model)>, detail::CrankModel>) {
-          stroke = stroke_angle(model.kinematics(y[0]));
-          if (model.pitching) pitch_angle = model.now.psi;
-        } else if constexpr (std::is_same_v<std::remove_cvref_t<decltype(model)>, detail::PitchDirectModel>) {
-          pitch_angle = y[2];
-        }
-        return waveform_row(model.vehicle, model.motion_now(), model.now.t, y[0], y[1], stroke, pitch_angle);
-      },
-      model_->any);
+  const TimeModel& model = model_->in_time;
+  const Coordinates<double>& moving = model.now.moving;
+  return waveform_row(model.vehicle, model.motion_now(), model.now.t, moving.angle, moving.speed,
+                      model.stroke_angle(moving.angle), model.indices.pitching ? moving.pitch_angle : absent);
 }
 
-bool Simulation::stands() const {
-  return std::visit([](const auto& model) { return model.now.stuck; }, model_->any);
-}
-bool Simulation::ended() const {
-  return std::visit([](const auto& model) { return model.ended(); }, model_->any);
-}
+bool Simulation::stands() const { return model_->in_time.now.stuck; }
+bool Simulation::ended() const { return model_->in_time.ended(); }
 
 void Simulation::command(double voltage) {
   if (!std::isfinite(voltage)) throw ParameterError("voltage", "must be a finite number");
@@ -198,7 +140,7 @@ void Simulation::command(double voltage) {
 
 void Simulation::command(std::function<double(double)> voltage) {
   model_->times.clear();
-  std::visit([&](auto& model) { model.command = std::move(voltage); }, model_->any);
+  model_->in_time.command = std::move(voltage);
 }
 
 void Simulation::command(std::vector<double> times, std::vector<double> voltages) {
@@ -211,18 +153,14 @@ void Simulation::command(std::vector<double> times, std::vector<double> voltages
   }
   model_->times = std::move(times);
   model_->voltages = std::move(voltages);
-  std::visit([&](auto& model) { model_->command_line(model.now.t, model.command); }, model_->any);
+  model_->command_line(time(), model_->in_time.command);
 }
 
 void Simulation::release() {
   model_->times.clear();
-  std::visit(
-      [](auto& model) {
-        if (!model.command) return;
-        model.command = nullptr;
-        model.catch_up_with_supply();
-      },
-      model_->any);
+  if (!model_->in_time.command) return;
+  model_->in_time.command = nullptr;
+  model_->in_time.catch_up_with_supply();
 }
 
 std::vector<TransientEvent> Simulation::step_to(double until, const StepOptions& options) {
@@ -232,42 +170,38 @@ std::vector<TransientEvent> Simulation::step_to(double until, const StepOptions&
         "time", detail::format("must not lie in the past: the simulation is at %.10g s, got %.10g s", time(), until));
   }
   EventWatch watch{{}, options};
-  std::visit(
-      [&](auto& model) {
-        BackUnlessDone back{model};
-        detail::StepOutcome outcome = detail::StepOutcome::reached;
-        while (model.now.t < until && outcome == detail::StepOutcome::reached) {
-          double end = until;
-          if (!model_->times.empty()) end = std::min(until, model_->command_line(model.now.t, model.command));
-          double highest = supply_voltage(model);
-          if (model.command) {
-            highest = std::max({highest, std::abs(model.command(model.now.t)), std::abs(model.command(end))});
-          }
-          if (highest != model_->scaled_to) model.scale_to(model_->scaled_to = highest);
-          outcome = detail::step_to(model, end, model_->options.tolerance, TimeIntegrator::own_steps, watch);
-        }
-        if (outcome == detail::StepOutcome::failed) {
-          throw std::runtime_error("the simulation could not go on behind " + std::to_string(model.now.t) + " s");
-        }
-        back.done = true;
-      },
-      model_->any);
+  TimeModel& model = model_->in_time;
+  BackUnlessDone back{model};
+  detail::StepOutcome outcome = detail::StepOutcome::reached;
+  while (model.now.t < until && outcome == detail::StepOutcome::reached) {
+    double end = until;
+    if (!model_->times.empty()) end = std::min(until, model_->command_line(model.now.t, model.command));
+    double highest = model.supply.voltage;
+    if (model.command) {
+      highest = std::max({highest, std::abs(model.command(model.now.t)), std::abs(model.command(end))});
+    }
+    if (highest != model_->scaled_to) model.scale_to(model_->scaled_to = highest);
+    outcome = detail::step_to(model, end, model_->options.tolerance, TimeIntegrator::own_steps, watch);
+  }
+  if (outcome == detail::StepOutcome::failed) {
+    throw std::runtime_error("the simulation could not go on behind " + std::to_string(model.now.t) + " s");
+  }
+  back.done = true;
   return std::move(watch.events);
 }
 
 SimulationState Simulation::save() const {
   const SimulationOptions& o = model_->options;
-  SimulationState state{{double(model_->any.index()), o.angle, o.speed, o.current, o.pitch_angle, o.pitch_velocity}};
-  std::visit(
-      [&](const auto& model) {
-        model.now.each(model.now, [&](const auto& number) { state.numbers.push_back(double(number)); });
-      },
-      model_->any);
+  const TimeModel& model = model_->in_time;
+  SimulationState state{{double(model.indices.count) + (model.direct ? 0.5 : 0.0), o.angle, o.speed, o.current,
+                         o.pitch_angle, o.pitch_velocity}};
+  model.now.each(model.now, [&](const auto& number) { state.numbers.push_back(double(number)); });
   return state;
 }
 
 void Simulation::restore(const SimulationState& state) {
-  if (state.numbers.size() != save().numbers.size() || state.numbers[0] != double(model_->any.index())) {
+  const SimulationState mine = save();
+  if (state.numbers.size() != mine.numbers.size() || state.numbers[0] != mine.numbers[0]) {
     throw ParameterError("state", "is that of another kind of vehicle");
   }
   const double* next = state.numbers.data() + 1;
@@ -275,11 +209,8 @@ void Simulation::restore(const SimulationState& state) {
   for (double* number : {&o.angle, &o.speed, &o.current, &o.pitch_angle, &o.pitch_velocity}) *number = *next++;
   // What is fixed by the start: typical sizes, how far the crank can turn.
   model_->start();
-  std::visit(
-      [&](auto& model) {
-        model.now.each(model.now, [&](auto& number) { number = std::remove_reference_t<decltype(number)>(*next++); });
-      },
-      model_->any);
+  TimeModel::State& now = model_->in_time.now;
+  now.each(now, [&](auto& number) { number = std::remove_reference_t<decltype(number)>(*next++); });
 }
 
 }  // namespace wingbeat

@@ -3,78 +3,42 @@
 #pragma once
 
 #include <algorithm>
-#include <concepts>
 #include <cstddef>
 #include <optional>
 
 #include "time/model_problem.hpp"
+#include "time/time_model.hpp"
 
 namespace wingbeat::detail {
-
-/// A vehicle in time (CrankModel, DirectModel): unknowns that are integrated on smooth pieces, and what happens between
-/// them. `now` is everything that moves; all else is fixed by start().
-template <class M>
-concept TimeModel = std::copyable<typename M::State> &&
-                    requires(M m, const M& fixed, double t, double* y, const double* states, std::size_t k) {
-                      { m.now } -> std::same_as<typename M::State&>;
-                      { fixed.coupled } -> std::convertible_to<int>;  // number of unknowns
-                      { fixed.ended() } -> std::same_as<bool>;        // it cannot go on
-                      m.begin_piece();                                // decides on what branch it goes on
-                      fixed.unknowns(y);
-                      m.set(t, states);
-                      { fixed.rates(t, states, y, false) } -> std::same_as<bool>;
-                      { M::indicator_count } -> std::convertible_to<std::size_t>;
-                      { fixed.indicators(t, states)[k] } -> std::convertible_to<double>;
-                      { fixed.directions()[k] } -> std::convertible_to<int>;  // which sign changes of them count
-                      m.handle(k);                                            // one of them has changed its sign
-                      { fixed.event_at(k) } -> std::same_as<std::optional<TransientEvent::Kind>>;
-                      { m.branch_lost() } -> std::same_as<bool>;  // the branch was not the one it is on
-                      { fixed.next_switch() } -> std::convertible_to<double>;
-                      m.switch_supply();
-                      fixed.tolerated(1e-6, states, y);
-                      { fixed.typical()[k] } -> std::convertible_to<double>;
-                      { fixed.longest_step() } -> std::convertible_to<double>;
-                      { fixed.stiff() } -> std::same_as<bool>;
-                    };
 
 /// Watches a simulation: nothing to see.
 struct NoWatch {
   /// Before what happens at the end of a step from the time `from` [s] to where the model stands: a moment within it to
   /// stop at, of which nothing behind it has happened.
-  template <class Model>
-  std::optional<double> stepped(const Model&, Integrator&, double /*from*/) const {
-    return std::nullopt;
-  }
+  std::optional<double> stepped(const TimeModel&, Integrator&, double /*from*/) const { return std::nullopt; }
   /// Of the model as it stands; true stops it there.
-  template <class Model>
-  bool happened(const Model&, TransientEvent::Kind) const {
-    return false;
-  }
+  bool happened(const TimeModel&, TransientEvent::Kind) const { return false; }
 };
 
 enum class StepOutcome { reached, stopped, ended, failed };
 
-/// The model goes on to the time `until` [s]. Its state alone decides how: from a saved state the same bits come again.
-/// `tolerance`: admissible relative error of a step. stopped: by what watches; failed: the integrator could not go on,
-/// or events without end.
-template <TimeModel Model, class Watch = NoWatch>
+/// The model, a TimeModel or what is derived from it, goes on to the time `until` [s]. Its state alone decides how:
+/// from a saved state the same bits come again. `tolerance`: admissible relative error of a step. stopped: by what
+/// watches; failed: the integrator could not go on, or events without end.
+template <class Model, class Watch = NoWatch>
 StepOutcome step_to(Model& model, double until, double tolerance, TimeIntegrator which = TimeIntegrator::own_steps,
                     Watch&& watch = {}) {
   using Kind = TransientEvent::Kind;
   constexpr int max_pieces = 1000000;
   bool stops = false;
   const auto tell = [&](Kind kind) { stops |= watch.happened(model, kind); };
-  const auto impacts = [&] {
-    if constexpr (requires { model.now.impact_loss; }) return model.now.impact_loss;
-    else return 0.0;
-  };
-  double impact_loss = impacts();
+  double impact_loss = model.now.impact_loss;
   // Changes the model and tells what has come of it.
   const auto doing = [&](const auto& change) {
     const bool had_ended = model.ended();
     change();
-    if (impacts() > impact_loss) tell(Kind::stop_impact);
-    impact_loss = impacts();
+    if (model.now.impact_loss > impact_loss) tell(Kind::stop_impact);
+    impact_loss = model.now.impact_loss;
     if (model.ended() && !had_ended) tell(Kind::jam);
   };
   const auto switch_supply = [&] {

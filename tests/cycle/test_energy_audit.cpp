@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "vehicle/pitching_vehicle.hpp"
-#include "wingbeat/cycle/direct_system.hpp"
+#include "wingbeat/cycle/cycle_system.hpp"
 #include "wingbeat/cycle/orbit_search.hpp"
 
 namespace wingbeat {

@@ -12,15 +12,19 @@
 namespace wingbeat {
 namespace {
 
+MotionState<double> instant_of(const Vehicle<double>& v, double theta, double omega, double current, double voltage) {
+  return {configuration_at(v, std::sin(theta), std::cos(theta)), omega, current, voltage};
+}
+
 struct MotionCase {
   Vehicle<double> vehicle;
   double theta, omega, current, voltage;
 
   Motion<double> on(double force_sign) const {
-    return motion_at(vehicle, std::sin(theta), std::cos(theta), omega, current, voltage, branch(force_sign));
+    return motion_at(vehicle, instant_of(vehicle, theta, omega, current, voltage), mode(force_sign));
   }
   /// The branch of stroke velocity and direction that holds; of the force, the one asked for.
-  Branch<double> branch(double force_sign) const {
+  Mode<double> mode(double force_sign) const {
     const auto k = crank_kinematics(vehicle.transmission, std::sin(theta), std::cos(theta));
     return {sign_of(k.stroke_slope * omega), force_sign, sign_of(omega), 1.0};
   }
@@ -172,9 +176,9 @@ TEST(Motion, IntegrandsAreTheirDefinitions) {
     if (!c.unique()) return;
     const Vehicle<double>& v = c.vehicle;
     const Motion<double> m = c.on(sign_of(c.on(1.0).force_switch));
-    Branch<double> branch = c.branch(sign_of(m.force_switch));
-    branch.stored_power = sign_of(m.stored_moment * m.stroke_velocity);
-    const auto q = integrands(m, c.omega, branch);
+    Mode<double> mode = c.mode(sign_of(m.force_switch));
+    mode.stored_power = sign_of(m.stored_moment * m.stroke_velocity);
+    const auto q = integrands(m, c.omega, mode);
     const auto value = [&](Integral which) { return q[std::size_t(which)]; };
     EXPECT_EQ(value(Integral::time), 1.0);
     EXPECT_DOUBLE_EQ(value(Integral::current), c.current);
@@ -198,7 +202,7 @@ TEST(Motion, WinglessVehicleHasNoRodForceAndSettlesAtTheNoLoadSpeed) {
   const double omega = no_load_speed(v.motor, v.voltage);
   const double i = algebraic_current(v, v.voltage, omega);
   for (double theta = 0.0; theta < two_pi; theta += 0.37) {
-    const Motion<double> m = motion_at(v, std::sin(theta), std::cos(theta), omega, i, v.voltage, {1.0, 1.0, 1.0, 1.0});
+    const Motion<double> m = motion_at(v, instant_of(v, theta, omega, i, v.voltage), Mode<double>{});
     EXPECT_EQ(m.rod_force, 0.0);
     EXPECT_EQ(m.aero.moment, 0.0);
     EXPECT_NEAR(m.crank_acceleration, 0.0, 1e-9);
@@ -212,7 +216,8 @@ TEST(Motion, VacuumKeepsWingsAndSprings) {
   const Vehicle<double> air = resolve(d), vacuum = resolve(d, Condition::vacuum);
   EXPECT_EQ(vacuum.wing_inertia, air.wing_inertia);
   EXPECT_EQ(vacuum.spring.stiffness, air.spring.stiffness);
-  const Motion<double> m = motion_at(vacuum, 0.6, 0.8, 150.0, 0.1, 3.0, {1.0, 1.0, 1.0, 1.0});
+  const Motion<double> m =
+      motion_at(vacuum, MotionState<double>{configuration_at(vacuum, 0.6, 0.8), 150.0, 0.1, 3.0}, Mode<double>{});
   EXPECT_EQ(m.aero.moment, 0.0);
   EXPECT_NE(m.rod_force, 0.0);
 }
@@ -223,7 +228,9 @@ TEST(Motion, AlgebraicCurrentLeavesNoVoltageReserve) {
   const Vehicle<double> v = resolve(d);
   const double i = algebraic_current(v, 3.0, 120.0);
   EXPECT_NEAR(i, (3.0 - 1.2) / 9.0, 1e-16);
-  EXPECT_NEAR(motion_at(v, 0.6, 0.8, 120.0, i, 3.0, {1.0, 1.0, 1.0, 1.0}).inductive_voltage, 0.0, 1e-15);
+  EXPECT_NEAR(
+      motion_at(v, MotionState<double>{configuration_at(v, 0.6, 0.8), 120.0, i, 3.0}, Mode<double>{}).inductive_voltage,
+      0.0, 1e-15);
 }
 
 TEST(Motion, DesignChecksNameTheirKey) {

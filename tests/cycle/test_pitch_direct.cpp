@@ -8,8 +8,7 @@
 #include "vehicle/recorded_impacts.hpp"
 #include "vehicle/return_map_derivative.hpp"
 #include "wingbeat/core/jet.hpp"
-#include "wingbeat/cycle/direct_system.hpp"
-#include "wingbeat/cycle/pitch_direct_system.hpp"
+#include "wingbeat/cycle/cycle_system.hpp"
 #include "wingbeat/cycle/pitch_metrics.hpp"
 #include "wingbeat/cycle/record.hpp"
 #include "wingbeat/cycle/recorded_cycle.hpp"
@@ -21,7 +20,7 @@ namespace {
 using PitchSystem = PitchDirectSystem<double, 5>;
 using Complex = std::complex<double>;
 
-PitchSystem pitch_system(const Vehicle<double>& v) { return {v, {0.5, 60.0, 0.5, 60.0, 0.1}}; }
+PitchSystem pitch_system(const Vehicle<double>& v) { return {v, {0.5, 60.0, 0.1, 0.5, 60.0}}; }
 
 struct PitchOrbit {
   PitchSystem system;
@@ -60,7 +59,7 @@ TEST(PitchDirect, SmallSwingsInVacuumAreTheComplexImpedances) {
   for (const double stiffness : {5e-5, 1e-3}) {
     Vehicle<double> vehicle = pitching_vehicle(stiffness, 1e-6, Condition::vacuum);
     PitchSystem system = pitch_system(vehicle);
-    system.typical = {2e-7, 2e-5, 2e-7, 2e-5, 3e-8};
+    system.typical = {2e-7, 2e-5, 3e-8, 2e-7, 2e-5};
     const PitchOrbit orbit = pitch_orbit(system, 1e-10);
     const Vehicle<double>& v = vehicle;
     const double w = two_pi * v.drive_frequency, K = v.motor.torque_constant, N = v.wing_count;
@@ -72,8 +71,8 @@ TEST(PitchDirect, SmallSwingsInVacuumAreTheComplexImpedances) {
     const Complex bp = -w * w * vehicle.pitch.mass_product;
     const Complex beta = K * v.voltage / Z / (bb - bp * bp / pp), psi = -bp / pp * beta;
     const Complex current = (v.voltage - K * j * w * beta) / Z;
-    const double expected[] = {beta.imag(), (j * w * beta).imag(), psi.imag(), (j * w * psi).imag(), current.imag()};
-    const double sizes[] = {std::abs(beta), w * std::abs(beta), std::abs(psi), w * std::abs(psi), std::abs(current)};
+    const double expected[] = {beta.imag(), (j * w * beta).imag(), current.imag(), psi.imag(), (j * w * psi).imag()};
+    const double sizes[] = {std::abs(beta), w * std::abs(beta), std::abs(current), std::abs(psi), w * std::abs(psi)};
     const PitchMetrics m = pitch_metrics(system, orbit.cycle);
     EXPECT_NEAR(m.amplitude, std::abs(psi), 1e-8 * std::abs(psi));
     EXPECT_NEAR(m.phase, std::arg(psi / (-j * beta)), 1e-7);
@@ -162,16 +161,16 @@ TEST(PitchDirect, StopsHoldTheWingsAndTakeTheEnergyOfImpacts) {
   Vehicle<double> v = pitching_vehicle(2e-4);
   double largest = 0.0;
   for (const auto& step : pitch_orbit(pitch_system(v), 1e-8).cycle.steps)
-    largest = std::max(largest, std::abs(step.y[2]));
+    largest = std::max(largest, std::abs(step.y[PitchSystem::pitch]));
   v.pitch.hinge.stop = 0.7 * largest;
   for (const double tolerance : {1e-6, 1e-10}) {
     const PitchOrbit orbit = pitch_orbit(pitch_system(v), tolerance);
     int held = 0, impacts = 0;
     for (std::size_t n = 0; n < orbit.cycle.steps.size(); ++n) {
       const auto& step = orbit.cycle.steps[n];
-      EXPECT_LE(std::abs(step.y[2]), v.pitch.hinge.stop * (1.0 + 1e-9));
+      EXPECT_LE(std::abs(step.y[PitchSystem::pitch]), v.pitch.hinge.stop * (1.0 + 1e-9));
       held += step.signs[PitchSystem::held] < 0.0;
-      EXPECT_TRUE(step.signs[PitchSystem::held] > 0.0 || step.y[3] == 0.0);
+      EXPECT_TRUE(step.signs[PitchSystem::held] > 0.0 || step.y[PitchSystem::pitch + 1] == 0.0);
       if (n > 0) impacts += step.signs[PitchSystem::impacts] != orbit.cycle.steps[n - 1].signs[PitchSystem::impacts];
     }
     const PitchMetrics m = pitch_metrics(orbit.system, orbit.cycle);
@@ -199,8 +198,8 @@ TEST(PitchDirect, MeanLiftHasTheImpulsesOfImpacts) {
     for (std::size_t k = 0; k < detail::gauss_nodes.size(); ++k) {
       const double x = step.x + 0.5 * (1.0 + detail::gauss_nodes[k]) * step.h;
       const auto y = solver::evaluate_inside<false>(system, orbit.cycle, step, x).y;
-      const double velocity = step.signs[PitchSystem::held] < 0.0 ? 0.0 : y[3];
-      const PitchState<double> state = pitch_state(y[2], velocity, y[1]);
+      const double velocity = step.signs[PitchSystem::held] < 0.0 ? 0.0 : y[PitchSystem::pitch + 1];
+      const PitchState<double> state = pitch_state(y[PitchSystem::pitch], velocity, y[1]);
       const PitchAeroLoads<double> air = aero_loads(v.wings, v.pitch, state, sign_of(y[1]), sign_of(velocity));
       const double momentum = v.pitch.air.r * y[1] * state.cos_psi + v.pitch.air.p * velocity;
       const double lift = momentum * velocity * state.cos_psi - air.normal_force * state.sin_psi;
@@ -217,7 +216,7 @@ TEST(PitchDirect, DerivativeOfTheReturnMapCrossesImpacts) {
   v.pitch.hinge.stop = 0.5;
   const PitchSystem system = pitch_system(v);
   const auto cycle =
-      expect_return_map_derivative(system, {0.3, -20.0, 0.1, 10.0, 0.05}, {1e-4, 1e-2, 1e-4, 1e-2, 1e-4}, 3e-4);
+      expect_return_map_derivative(system, {0.3, -20.0, 0.05, 0.1, 10.0}, {1e-4, 1e-2, 1e-4, 1e-4, 1e-2}, 3e-4);
   EXPECT_GT(impact_loss(system, cycle), 0.0);
 }
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "vehicle/stroke_law.hpp"
-#include "wingbeat/cycle/crank_system.hpp"
 #include "wingbeat/cycle/cycle_gradient.hpp"
+#include "wingbeat/cycle/cycle_system.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/extremes.hpp"
 #include "wingbeat/solve/periodic.hpp"
@@ -85,8 +85,9 @@ template <int N>
 Orbit<N> orbit_of(const StrokeLawVehicle<double>& v, double tolerance) {
   using System = typename Orbit<N>::System;
   const double no_load = no_load_speed(v);
-  Orbit<N> orbit{{System(v, 1e-4 * no_load, v.voltage / circuit_resistance(v)), {}}, {}, {}};
-  typename System::State guess;
+  typename System::State guess{no_load};
+  if constexpr (N == 2) guess[1] = v.voltage / circuit_resistance(v);
+  Orbit<N> orbit{{System(v, guess, 1e-4 * no_load), {}}, {}, {}};
   guess[0] = 0.6 * no_load;
   if constexpr (N == 2) guess[1] = algebraic_current(v, v.voltage, guess[0]);
   orbit.summary = solver::solve_periodic(orbit.recorded.system, guess, {.tolerance = tolerance}, orbit.recorded.cycle);
@@ -134,11 +135,11 @@ TEST(StrokeLawOrbit, IsWhatTheEquationsReachInTime) {
   const auto rates = [&](const State& y) -> State {
     const double s = std::sin(y[0]), c = std::cos(y[0]);
     const double stroke = sign_of(crank_kinematics(v.transmission, s, c).stroke_slope * y[1]);
-    Branch<double> branch{stroke, 1.0, sign_of(y[1]), 1.0};
-    Motion<double> m = motion_at(v, s, c, y[1], y[2], v.voltage, branch);
+    Mode<double> mode{stroke, 1.0, sign_of(y[1]), 1.0};
+    Motion<double> m = motion_at(v, MotionState<double>{configuration_at(v, s, c), y[1], y[2], v.voltage}, mode);
     if (m.force_switch < 0.0) {
-      branch.force = -1.0;
-      m = motion_at(v, s, c, y[1], y[2], v.voltage, branch);
+      mode.force = -1.0;
+      m = motion_at(v, MotionState<double>{configuration_at(v, s, c), y[1], y[2], v.voltage}, mode);
     }
     return {y[1], m.crank_acceleration, m.inductive_voltage / v.motor.armature_inductance};
   };

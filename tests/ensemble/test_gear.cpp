@@ -42,8 +42,9 @@ TEST(GearEfficiency, OneBranchHoldsAndTheGearboxOnlyTakes) {
     int agree = 0;
     for (const double gear : {1.0, -1.0}) {
       for (const double force : {1.0, -1.0}) {
-        const Branch<double> branch{sign_of(k.stroke_slope), force, 1.0, 1.0, 1.0, gear};
-        const Motion<double> m = motion_at(v, std::sin(theta), std::cos(theta), omega, i, 3.0, branch);
+        const Mode<double> mode{sign_of(k.stroke_slope), force, 1.0, 1.0, 1.0, gear};
+        const Motion<double> m = motion_at(
+            v, MotionState<double>{configuration_at(v, std::sin(theta), std::cos(theta)), omega, i, 3.0}, mode);
         if (m.force_switch * force < 0.0 || m.gear_torque * gear < 0.0) continue;
         ++agree;
         driven += gear < 0.0 ? 1 : 0;

@@ -3,7 +3,7 @@
 
 #include <array>
 
-#include "wingbeat/cycle/crank_system.hpp"
+#include "wingbeat/cycle/cycle_system.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/vehicle/motion.hpp"
 
@@ -22,8 +22,9 @@ inline constexpr int instant_size = motion_size + integral_count + extreme_count
 template <Scalar S>
 std::array<S, instant_size> instant(const Vehicle<S>& v, const Point<S>& p) {
   const CrankKinematics<S> k = crank_kinematics(v.transmission, p.sin_theta, p.cos_theta);
-  const Branch<S> branch{sign_of<S>(k.stroke_slope * p.omega), p.force, sign_of(p.omega), p.stored};
-  const Motion<S> m = motion_at(v, p.sin_theta, p.cos_theta, p.omega, p.current, p.voltage, branch);
+  const Mode<S> mode{sign_of<S>(k.stroke_slope * p.omega), p.force, sign_of(p.omega), p.stored};
+  const Motion<S> m =
+      motion_at(v, MotionState<S>{configuration_at(v, p.sin_theta, p.cos_theta), p.omega, p.current, p.voltage}, mode);
   std::array<S, instant_size> out = {slider_height(v.transmission.slider_crank, p.sin_theta, p.cos_theta),
                                      stroke_angle(k),
                                      k.stroke_slope,
@@ -47,8 +48,8 @@ std::array<S, instant_size> instant(const Vehicle<S>& v, const Point<S>& p) {
                                      algebraic_current(v, p.voltage, p.omega),
                                      m.aero.angle_of_attack,
                                      m.aero.power};
-  const CycleIntegrals<S> q = integrands(m, p.omega, branch);
-  const CycleExtremes<S> e = extreme_candidates(m, p.omega, branch);
+  const CycleIntegrals<S> q = integrands(m, p.omega, mode);
+  const CycleExtremes<S> e = extreme_candidates(m, p.omega, mode);
   for (std::size_t n = 0; n < q.size(); ++n) out[motion_size + n] = q[n];
   for (std::size_t n = 0; n < e.size(); ++n) out[motion_size + q.size() + n] = e[n];
   return out;
@@ -61,7 +62,7 @@ inline constexpr std::size_t motor_work_at = motion_size + std::size_t(Integral:
 
 inline constexpr int step_size = 2 + integral_count;
 
-/// One explicit step of the crank, integrals included, on a given smooth branch. Without inductance the current is none
+/// One explicit step of the crank, integrals included, on a given smooth mode. Without inductance the current is none
 /// of the states; `out` holds zero for it.
 template <Scalar S>
 std::array<S, step_size> crank_step(const Vehicle<S>& v, const S& theta, const std::array<S, 2>& state, const S& h,
@@ -75,9 +76,9 @@ std::array<S, step_size> crank_step(const Vehicle<S>& v, const S& theta, const s
     for (std::size_t n = 0; n < result.dq.size(); ++n) out[2 + n] = result.dq[n];
   };
   if (value_of(v.motor.armature_inductance) > 0.0) {
-    take(CrankSystem<S, 2>{v, S(0.0), S(1.0)}, state);
+    take(CrankSystem<S, 2>{v, {state[0], S(1.0)}}, state);
   } else {
-    take(CrankSystem<S, 1>{v, S(0.0), S(1.0)}, std::array<S, 1>{state[0]});
+    take(CrankSystem<S, 1>{v, {state[0]}}, std::array<S, 1>{state[0]});
   }
   return out;
 }

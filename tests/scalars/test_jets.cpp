@@ -173,13 +173,13 @@ struct StepOf {
     typename CrankSystem<S, 2>::Signs signs;
     signs.fill(S(1.0));
     if (!implicit) return crank_step<S>(in.vehicle, in.theta, state, S(0.3), signs);
-    const CrankSystem<S, 2> system{in.vehicle, S(0.0), S(1.0)};
+    const CrankSystem<S, 2> system{in.vehicle, {in.omega, S(1.0)}};
     solver::StepResult<CrankSystem<S, 2>> result;
     if constexpr (std::is_same_v<S, double>) {
       const auto first = system.template rates<true>(in.theta, state, signs);
       result = solver::implicit_step<true>(system, in.theta, state, 0.3, signs, first);
     } else {
-      const CrankSystem<double, 2> values{plain(in.vehicle), 0.0, 1.0};
+      const CrankSystem<double, 2> values{plain(in.vehicle), {1.0, 1.0}};
       result = solver::implicit_step<true>(system, values, in.theta, state, S(0.3), signs);
     }
     EXPECT_TRUE(result.admissible);

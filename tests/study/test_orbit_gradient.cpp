@@ -1,5 +1,5 @@
 // Derivatives through the orbit against central differences, every metric by every numeric parameter.
-#include "wingbeat/cycle/crank_system.hpp"
+#include "wingbeat/cycle/cycle_system.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
 #include "wingbeat/cycle/recorded_cycle.hpp"
 

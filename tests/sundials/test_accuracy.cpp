@@ -6,7 +6,7 @@
 #include <complex>
 
 #include "vehicle/wide_design.hpp"
-#include "wingbeat/cycle/crank_system.hpp"
+#include "wingbeat/cycle/cycle_system.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/solve/iterate.hpp"
 #include "wingbeat/time/transient.hpp"
@@ -183,7 +183,8 @@ TEST(Accuracy, MultipliersAreTheContractionOfCycles) {
     const double multiplier = orbit.metrics[Metric::floquet_multiplier_max];
     if (multiplier < 0.3) continue;
     // The other multiplier is far smaller: after one cycle its part has gone.
-    const CrankSystem<double, 2> system{v, 1e-4 * no_load_speed(v), v.voltage / circuit_resistance(v)};
+    const CrankSystem<double, 2> system{
+        v, {no_load_speed(v), v.voltage / circuit_resistance(v)}, 1e-4 * no_load_speed(v)};
     solver::Iterate<CrankSystem<double, 2>> cycle;
     std::array<double, 2> y = {orbit.crank_speed * (1.0 + 1e-4), orbit.current};
     double apart[4];

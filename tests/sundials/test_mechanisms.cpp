@@ -4,7 +4,7 @@
 #include "vehicle/reference_vehicle.hpp"
 #include "vehicle/stroke_law.hpp"
 #include "vehicle/wide_boxes.hpp"
-#include "wingbeat/cycle/crank_system.hpp"
+#include "wingbeat/cycle/cycle_system.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/recorded_cycle.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
@@ -99,7 +99,8 @@ TEST(TabulatedVehicle, FlapsAsTheLawThatItSamples) {
   ASSERT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
   using System = CrankSystem<double, 2, StrokeLawVehicle<double>>;
   const double speed = 0.6 * no_load_speed(exact);
-  const System system(exact, 1e-4 * no_load_speed(exact), exact.voltage / circuit_resistance(exact));
+  const System system(exact, {no_load_speed(exact), exact.voltage / circuit_resistance(exact)},
+                      1e-4 * no_load_speed(exact));
   solver::Iterate<System> cycle;
   const auto summary = solver::solve_periodic(system, {speed, algebraic_current(exact, exact.voltage, speed)},
                                               {.tolerance = 1e-10}, cycle);

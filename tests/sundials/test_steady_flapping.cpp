@@ -5,7 +5,7 @@
 #include "vehicle/known_orbits.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/reference_vehicle.hpp"
-#include "wingbeat/cycle/crank_system.hpp"
+#include "wingbeat/cycle/cycle_system.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
@@ -111,7 +111,7 @@ TEST(SteadyFlapping, CreepsNearStall) {
 TEST(SteadyFlapping, FloquetMultiplierIsThatOfTheCycleMapByDifferences) {
   const Vehicle<double> vehicle = reference_vehicle(true);
   const SteadyFlapping found = find_steady_flapping(vehicle, {.tolerance = tightest});
-  CrankSystem<double, 2> system{vehicle, 1e-3, 1.0 / 3.0};
+  CrankSystem<double, 2> system{vehicle, {100.0, 1.0 / 3.0}, 1e-3};
   solver::Iterate<CrankSystem<double, 2>> cycle;
   solver::IterateOptions options{.tolerance = 1e-13};
   // The return map's derivative by central differences; its eigenvalues are a complex pair here.

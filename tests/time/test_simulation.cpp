@@ -3,31 +3,25 @@
 
 #include <gtest/gtest.h>
 
-#include "time/crank_model.hpp"
-#include "time/direct_model.hpp"
+#include "time/time_model.hpp"
 #include "vehicle/random_vehicle.hpp"
 
 namespace wingbeat {
 namespace {
 
-using detail::CrankModel, detail::DirectModel, detail::step_to, detail::StepOutcome;
+using detail::TimeModel, detail::step_to, detail::StepOutcome;
 
 Supply<double> constant(double voltage) { return {SupplyType::constant, voltage, 0.0, 1.0}; }
 
-CrankModel started(const Vehicle<double>& vehicle, const Supply<double>& supply) {
-  CrankModel model(vehicle, supply);
-  model.start(0.0, 0.0, 0.0);
-  return model;
-}
-DirectModel started(const Vehicle<double>& vehicle) {
-  DirectModel model(vehicle);
-  model.start(0.0, 0.0, 0.0);
+TimeModel started(const Vehicle<double>& vehicle, const Supply<double>& supply = {}) {
+  TimeModel model(vehicle, supply);
+  model.start({});
   return model;
 }
 
 /// The samples of a recorded start-up by its own steps, met by steps to each of their moments.
-template <class Model, class Compare>
-void meets(Model model, const Vehicle<double>& vehicle, TransientOptions options, double until,
+template <class Compare>
+void meets(TimeModel model, const Vehicle<double>& vehicle, TransientOptions options, double until,
            const Compare& compare) {
   options.tolerance = 1e-8;
   options.record = true;
@@ -48,12 +42,12 @@ void meets(Model model, const Vehicle<double>& vehicle, TransientOptions options
 void crank_meets(const Vehicle<double>& vehicle, const Supply<double>& supply, double until) {
   TransientOptions options;
   options.supply = supply;
-  meets(started(vehicle, supply), vehicle, options, until, [](const CrankModel& model, const TransientSample& s) {
+  meets(started(vehicle, supply), vehicle, options, until, [](const TimeModel& model, const TransientSample& s) {
     // Under a sine a standstill is recorded to the end of the 64th of a period within which it ends.
     if (model.supply.type == SupplyType::sine && s.crank_speed == 0.0) return;
-    EXPECT_NEAR(model.now.theta, s.crank_angle, 1e-6) << s.time;
-    EXPECT_NEAR(model.now.omega, s.crank_speed, 1e-4) << s.time;
-    EXPECT_NEAR(model.now.i, s.current, 1e-6) << s.time;
+    EXPECT_NEAR(model.now.moving.angle, s.crank_angle, 1e-6) << s.time;
+    EXPECT_NEAR(model.now.moving.speed, s.crank_speed, 1e-4) << s.time;
+    EXPECT_NEAR(model.now.moving.current, s.current, 1e-6) << s.time;
   });
 }
 
@@ -76,12 +70,12 @@ TEST(Simulation, MeetsStartUpOfDirectDrives) {
   std::mt19937_64 random(4);
   for (int n = 0; n < 12; ++n) {
     const Vehicle<double> v = resolve(random_direct_design(random, n % 2 == 1));
-    DirectModel model = started(v);
-    const double speed = model.speed_scale, stroke = model.stroke_scale, current = model.current_scale;
-    meets(model, v, {}, 0.1, [&](const DirectModel& now, const TransientSample& s) {
-      EXPECT_NEAR(now.now.y[0], s.crank_angle, 1e-6 * stroke) << n << " " << s.time;
-      EXPECT_NEAR(now.now.y[1], s.crank_speed, 1e-5 * speed) << n << " " << s.time;
-      EXPECT_NEAR(now.current_of(now.now.t, now.now.y), s.current, 1e-5 * current) << n << " " << s.time;
+    TimeModel model = started(v);
+    const double speed = model.speed_scale, stroke = model.angle_scale, current = model.current_scale;
+    meets(model, v, {}, 0.1, [&](const TimeModel& now, const TransientSample& s) {
+      EXPECT_NEAR(now.now.moving.angle, s.crank_angle, 1e-6 * stroke) << n << " " << s.time;
+      EXPECT_NEAR(now.now.moving.speed, s.crank_speed, 1e-5 * speed) << n << " " << s.time;
+      EXPECT_NEAR(now.now.moving.current, s.current, 1e-5 * current) << n << " " << s.time;
     });
   }
 }
@@ -93,55 +87,57 @@ TEST(Simulation, ComesBackToTheSameBits) {
   for (const Supply<double>& supply :
        {constant(3.0), Supply<double>{SupplyType::pwm, 4.0, 500.0, 0.75}, {SupplyType::sine, 3.0, 22.0, 1.0}}) {
     for (const Vehicle<double>& v : {reference_vehicle(true), swinging}) {
-      CrankModel model = started(v, supply);
+      TimeModel model = started(v, supply);
       ASSERT_EQ(step_to(model, 0.0313, 1e-8), StepOutcome::reached);
-      const CrankModel::State saved = model.now;
-      CrankModel::State reached[2];
-      for (CrankModel::State& state : reached) {
+      const TimeModel::State saved = model.now;
+      TimeModel::State reached[2];
+      for (TimeModel::State& state : reached) {
         model.now = saved;
         ASSERT_EQ(step_to(model, 0.05, 1e-8), StepOutcome::reached);
         ASSERT_EQ(step_to(model, 0.08, 1e-8), StepOutcome::reached);
         state = model.now;
       }
-      EXPECT_EQ(reached[0].theta, reached[1].theta);
-      EXPECT_EQ(reached[0].omega, reached[1].omega);
-      EXPECT_EQ(reached[0].i, reached[1].i);
+      EXPECT_EQ(reached[0].moving.angle, reached[1].moving.angle);
+      EXPECT_EQ(reached[0].moving.speed, reached[1].moving.speed);
+      EXPECT_EQ(reached[0].moving.current, reached[1].moving.current);
       EXPECT_EQ(reached[0].switches, reached[1].switches);
     }
   }
   std::mt19937_64 random(9);
   for (int n = 0; n < 8; ++n) {
-    DirectModel model = started(resolve(random_direct_design(random, n % 2 == 1)));
+    TimeModel model = started(resolve(random_direct_design(random, n % 2 == 1)));
     ASSERT_EQ(step_to(model, 0.0313, 1e-8), StepOutcome::reached);
-    const DirectModel::State saved = model.now;
+    const TimeModel::State saved = model.now;
     ASSERT_EQ(step_to(model, 0.08, 1e-8), StepOutcome::reached);
-    const DirectModel::State first = model.now;
+    const TimeModel::State first = model.now;
     model.now = saved;
     ASSERT_EQ(step_to(model, 0.08, 1e-8), StepOutcome::reached);
-    for (int k = 0; k < 3; ++k) EXPECT_EQ(model.now.y[k], first.y[k]);
+    EXPECT_EQ(model.now.moving.angle, first.moving.angle);
+    EXPECT_EQ(model.now.moving.speed, first.moving.speed);
+    EXPECT_EQ(model.now.moving.current, first.moving.current);
   }
 }
 
 TEST(Simulation, StandsWhereFrictionHolds) {
   Vehicle<double> v = reference_vehicle();
   v.motor.friction_torque = 3.4e-3;  // above the stall torque
-  CrankModel model = started(v, constant(3.0));
+  TimeModel model = started(v, constant(3.0));
   ASSERT_EQ(step_to(model, 1.0, 1e-8), StepOutcome::reached);
   EXPECT_TRUE(model.now.stuck);
-  EXPECT_EQ(model.now.theta, 0.0);
-  EXPECT_NEAR(model.now.i, 3.0 / 9.0, 1e-9);
+  EXPECT_EQ(model.now.moving.angle, 0.0);
+  EXPECT_NEAR(model.now.moving.current, 3.0 / 9.0, 1e-9);
 }
 
 TEST(Simulation, EndsWhereItJams) {
   Vehicle<double> v = reference_vehicle();
   v.motor.inertia = 1e-9;
   v.friction.radius = 3e-3;
-  CrankModel model = started(v, constant(3.0));
+  TimeModel model = started(v, constant(3.0));
   EXPECT_EQ(step_to(model, 1.0, 1e-8), StepOutcome::ended);
   EXPECT_LT(model.now.t, 1.0);
   const TransientResult r = simulate_start_up(v);
   ASSERT_EQ(r.status, FlappingStatus::jammed);
-  EXPECT_NEAR(model.now.theta, r.end_crank_angle, 1e-6);
+  EXPECT_NEAR(model.now.moving.angle, r.end_crank_angle, 1e-6);
 }
 
 TEST(Simulation, MotorTooHotToHaveAFieldStands) {

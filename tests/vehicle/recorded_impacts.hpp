@@ -15,7 +15,8 @@ double impact_loss(const System& system, const solver::Iterate<System>& cycle) {
     if (before.signs[System::impacts] == cycle.steps[n].signs[System::impacts]) continue;
     const double x = before.x + before.h;
     typename System::Quadrature totals{};
-    pitch_stops::after_impact(system, x, solver::evaluate_inside<false>(system, cycle, before, x).y, &totals);
+    pitch_stops::after_impact(system, x, solver::evaluate_inside<false>(system, cycle, before, x).y, before.signs,
+                              &totals);
     lost += totals[System::hinge_work];
   }
   return lost;

@@ -5,8 +5,8 @@
 #include <random>
 
 #include "vehicle/hinged_design.hpp"
+#include "wingbeat/vehicle/dynamics.hpp"
 #include "wingbeat/vehicle/motion.hpp"
-#include "wingbeat/vehicle/pitch_motion.hpp"
 
 namespace wingbeat {
 namespace {
@@ -37,10 +37,14 @@ double energy(const Vehicle<double>& v, const CrankKinematics<double>& k, double
   return kinetic_energy(pitch_inertia(v.pitch, v.wing_count * v.wing_inertia, state), state);
 }
 
+MotionState<double> at(const CrankKinematics<double>& k, double omega, double psi, double velocity) {
+  return {{k, 0.0}, omega, 0.0, 0.0, psi, velocity};
+}
+
 TEST(StopImpact, PartsAddUpAndNoneGivesEnergy) {
   at_random_states(
       [](const Vehicle<double>& v, const CrankKinematics<double>& k, double omega, double psi, double velocity) {
-        const StopImpact<double> impact = stop_impact(v, v.pitch, k, omega, psi, velocity, 1.0);
+        const StopImpact<double> impact = stop_impact(v, at(k, omega, psi, velocity), 1.0);
         const double J = v.motor.inertia, after = omega + impact.shaft_speed, mean = omega + 0.5 * impact.shaft_speed;
         const double rotor = 0.5 * J * (square(omega) - square(after));
         const double wings = energy(v, k, omega, psi, velocity) - energy(v, k, after, psi, 0.0);
@@ -64,9 +68,9 @@ TEST(StopImpact, TwoHalvesAreTheWhole) {
   at_random_states(
       [](const Vehicle<double>& v, const CrankKinematics<double>& k, double omega, double psi, double velocity) {
         const double left = 0.3 * velocity;
-        const StopImpact<double> whole = stop_impact(v, v.pitch, k, omega, psi, velocity, 1.0);
-        const StopImpact<double> first = stop_impact(v, v.pitch, k, omega, psi, velocity, 1.0, left);
-        const StopImpact<double> second = stop_impact(v, v.pitch, k, omega + first.shaft_speed, psi, left, 1.0);
+        const StopImpact<double> whole = stop_impact(v, at(k, omega, psi, velocity), 1.0);
+        const StopImpact<double> first = stop_impact(v, at(k, omega, psi, velocity), 1.0, left);
+        const StopImpact<double> second = stop_impact(v, at(k, omega + first.shaft_speed, psi, left), 1.0);
         const double size = energy(v, k, omega, psi, velocity) + 0.5 * v.motor.inertia * square(omega);
         EXPECT_NEAR(first.shaft_speed + second.shaft_speed, whole.shaft_speed, 1e-9 * omega);
         EXPECT_NEAR(first.motor_work + second.motor_work, whole.motor_work, 1e-12 * size);

@@ -41,7 +41,7 @@ class CycleGradient {
   using Jets = decltype(std::declval<System>().template cast<W>());
   using Along = decltype(std::declval<System>().template cast<Jet<1>>());
   using JetState = typename Jets::State;
-  static constexpr bool pitching = requires { System::pitch; };
+  static constexpr bool pitching = System::on_hinges;
 
   CycleGradient(const RecordedCycle<System>& recorded,
                 const decltype(std::declval<System>().template cast<GradientJet>().vehicle)& vehicle)
@@ -214,6 +214,11 @@ class CycleGradient {
     for (std::size_t k = switches; k-- > 0;) {
       if (before.signs[k] != after.signs[k]) which = k;
     }
+    if constexpr (!System::turns) {
+      if (before.signs[System::slip] != after.signs[System::slip]) {
+        which = before.signs[System::slip] > 0.0 ? System::velocity : System::release;
+      }
+    }
     if (impact_before(n) || before.signs[System::held] != after.signs[System::held]) which = System::stop;
     if (which == switches) return W(0.0);
     const JetState& y = ends_[n - 1];
@@ -253,9 +258,10 @@ class CycleGradient {
   {
     constexpr std::size_t psi = System::pitch;
     if (n == cycle_.steps.size()) return ends_.back()[psi];
-    if constexpr (requires { System::velocity; }) {
+    if constexpr (!System::turns) {
       const auto& step = cycle_.steps[n];
-      if (n > 0 && step.signs[System::velocity] != cycle_.steps[n - 1].signs[System::velocity]) {
+      if (n > 0 && step.signs[System::velocity] != cycle_.steps[n - 1].signs[System::velocity] &&
+          step.signs[System::slip] > 0.0) {
         const auto& dy = step.first.dy;
         return starts_[n][psi] - dy[psi] / dy[System::shaft] * starts_[n][System::shaft];
       }

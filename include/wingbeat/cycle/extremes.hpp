@@ -75,7 +75,7 @@ CycleExtremes<double> cycle_extremes(const System& system, const solver::Iterate
     // Where the rates may jump, those of the next step do not belong to this one's end, and after an impact its state
     // does not.
     bool rates_jump = solver::jumps(system, 0);
-    if constexpr (requires { System::state_jumps; }) {
+    if constexpr (solver::state_jumps<System>()) {
       rates_jump = true;
       constexpr auto impacts = System::impacts;
       if (!last && step.signs[impacts] != cycle.steps[n + 1].signs[impacts]) {

@@ -7,14 +7,14 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/cycle/metric_values.hpp"
+#include "wingbeat/vehicle/dynamics.hpp"
 #include "wingbeat/vehicle/motion.hpp"
-#include "wingbeat/vehicle/pitch_motion.hpp"
 
 namespace wingbeat {
 
 /// The time integrands at one instant, indexed by Integral.
 template <Scalar S>
-CycleIntegrals<S> integrands(const Motion<S>& m, const S& omega, const Branch<S>& branch) {
+CycleIntegrals<S> integrands(const Motion<S>& m, const S& omega, const Mode<S>& mode) {
   const S i = m.current;
   return {S(1.0),
           i,
@@ -24,12 +24,12 @@ CycleIntegrals<S> integrands(const Motion<S>& m, const S& omega, const Branch<S>
           m.motor_torque * omega,
           m.friction_torque * omega,
           m.aero.power,
-          branch.stored_power * m.stored_moment * m.stroke_velocity,
+          mode.stored_power * m.stored_moment * m.stroke_velocity,
           m.rod_force * (m.kinematics.crank_jacobian * omega - m.kinematics.wing_jacobian * m.stroke_velocity),
           m.aero.lift,
-          branch.force * m.rod_force,
+          mode.force * m.rod_force,
           m.gear_loss,
-          branch.direction * omega};
+          mode.direction * omega};
 }
 
 /// What an impact on a stop adds to the integrals at once.
@@ -66,9 +66,8 @@ using CycleExtremes = std::array<S, extreme_count>;
 /// The value whose maximum over the cycle is sought for each Extreme (minima with their sign turned): i [A], lift [N],
 /// |F| [N], |beta'| [rad/s], -omega and omega [rad/s], beta and -beta [rad].
 template <Scalar S>
-CycleExtremes<S> extreme_candidates(const Motion<S>& m, const S& omega, const Branch<S>& branch,
-                                    const S& beta = S(0.0)) {
-  return {m.current, m.aero.lift, branch.force * m.rod_force, branch.stroke * m.stroke_velocity, -omega, omega,
+CycleExtremes<S> extreme_candidates(const Motion<S>& m, const S& omega, const Mode<S>& mode, const S& beta = S(0.0)) {
+  return {m.current, m.aero.lift, mode.force * m.rod_force, mode.stroke * m.stroke_velocity, -omega, omega,
           beta,      -beta};
 }
 

@@ -77,7 +77,7 @@ class OrbitSearch {
     solver::PeriodicOptions periodic{.tolerance = options_.get().tolerance,
                                      .stability = options_.get().stability,
                                      .expected_multiplier = expected_multiplier};
-    if constexpr (requires { System::pitch; }) periodic.max_steps = pitching_steps;
+    if constexpr (System::on_hinges) periodic.max_steps = pitching_steps;
     if (stiff(guess)) periodic.method = solver::Method::radau;
     const int iterates_before = summary_.iterates;
     solve(guess, periodic);
@@ -87,7 +87,7 @@ class OrbitSearch {
       periodic.method = solver::Method::radau;
       solve(guess, periodic);
     }
-    if (summary_.status == solver::PeriodicStatus::too_many_steps && !System::has_rod) {
+    if (summary_.status == solver::PeriodicStatus::too_many_steps && !System::turns) {
       // Not stiff then, but hard: a shaft that hardly breaks away.
       periodic.method = solver::Method::explicit_pair;
       periodic.max_steps *= 20;
@@ -102,7 +102,7 @@ class OrbitSearch {
   bool search_near(const State& guess) {
     solver::PeriodicOptions periodic{
         .tolerance = options_.get().tolerance, .stability = options_.get().stability, .near = true};
-    if constexpr (requires { System::pitch; }) periodic.max_steps = pitching_steps;
+    if constexpr (System::on_hinges) periodic.max_steps = pitching_steps;
     for (const auto method : {solver::Method::explicit_pair, solver::Method::radau}) {
       if (method == solver::Method::explicit_pair && stiff(guess)) continue;
       periodic.method = method;
@@ -146,7 +146,7 @@ class OrbitSearch {
     result.crank_speed = system_.shaft_speed(start());
     result.current = system_.current(0.0, start());
     const CycleExtremes<double> extremes = cycle_extremes(system_, iterate_, options_.get().tolerance);
-    constexpr bool pitching = requires { System::pitch; };
+    constexpr bool pitching = System::on_hinges;
     PitchMetrics of_pitch{};
     if constexpr (pitching) of_pitch = pitch();
     result.record = CycleRecord(CycleRecord::Recorded{RecordedCycle<System>{system_, std::move(iterate_)}});
@@ -185,7 +185,7 @@ class OrbitSearch {
   bool balances() const { return closes(audit(), options_.get().tolerance); }
   EnergyAudit audit() const {
     double hinge_work = 0.0;
-    if constexpr (requires { System::hinge_work; }) {
+    if constexpr (System::on_hinges) {
       for (const auto& step : iterate_.steps) hinge_work += step.dq[System::hinge_work];
     }
     return energy_audit(system_.vehicle, cycle_integrals(iterate_), hinge_work);

@@ -71,8 +71,9 @@ double pitch_at_start(const solver::Iterate<System>& cycle, std::size_t n) {
   constexpr std::size_t psi = System::pitch;
   if (n == cycle.steps.size()) return cycle.end[psi];
   const auto& step = cycle.steps[n];
-  if constexpr (requires { System::velocity; }) {
-    if (n > 0 && step.signs[System::velocity] != cycle.steps[n - 1].signs[System::velocity]) {
+  if constexpr (!System::turns) {
+    if (n > 0 && step.signs[System::velocity] != cycle.steps[n - 1].signs[System::velocity] &&
+        step.y[System::shaft] != 0.0) {
       const auto& dy = step.first.dy;
       return step.y[psi] - dy[psi] * step.y[System::shaft] / dy[System::shaft];
     }

@@ -1,16 +1,14 @@
 // Stops of the pitching as events of a periodic system, whatever drives the stroke (model.md section 12).
 //
 // A stop takes the pitch velocity in an inelastic impact, at which the stroke velocity jumps too, and holds the wings
-// as long as they press on it. A system has among its signs `turn` (of psi'), `stop` (the switch), `held` (-1 where a
-// stop holds the wings) and `impacts` (their number so far, so that a recorded cycle tells), among its states psi and
-// psi' at `pitch` and the next, and the speed of its shaft at `shaft`.
+// as long as they press on it. What the names of signs and states mean: CycleLayout.
 #pragma once
 
 #include <cmath>
 
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/solve/iterate_record.hpp"
-#include "wingbeat/vehicle/pitch_motion.hpp"
+#include "wingbeat/vehicle/dynamics.hpp"
 
 namespace wingbeat::pitch_stops {
 
@@ -53,24 +51,26 @@ void hold_or_leave(const System& system, const typename System::Real& x, const t
   signs[System::turn] = -stop_side;
   // An impact may have turned them over.
   solver::settle_signs(system, x, y, signs);
-  if (value_of(S(stop_side * system.pitch_motion(x, y, signs).stop_moment)) < 0.0) signs[System::held] = S(1.0);
+  if (value_of(S(stop_side * system.motion(x, y, signs).stop_moment)) < 0.0) signs[System::held] = S(1.0);
 }
 
 /// The state after the impact of one that is at a stop; what it adds to the integrals is added to `*totals`, where
 /// given.
 template <class System>
 typename System::State after_impact(const System& system, const typename System::Real& x, typename System::State y,
-                                    typename System::Quadrature* totals) {
+                                    const typename System::Signs& signs, typename System::Quadrature* totals) {
   using S = typename System::Real;
   y[System::pitch] = side<System>(y) * system.vehicle.pitch.hinge.stop;
-  const StopImpact<S> impact = stop_impact(system.vehicle, system.vehicle.pitch, system.kinematics(x), y[System::shaft],
-                                           y[System::pitch], y[System::pitch + 1], S(sign_of(y[System::shaft])));
-  if (totals) {
+  MotionState<S> instant{
+      {system.kinematics(x), S(0.0)}, y[System::shaft], S(0.0), S(0.0), y[System::pitch], y[System::pitch + 1]};
+  Mode<S> mode = System::mode(signs);
+  meet_stop(system.vehicle, &instant, &mode, [&](const StopImpact<S>& impact) {
+    if (!totals) return;
     const CycleIntegrals<S> at_once = impulses(impact);
     for (std::size_t q = 0; q < at_once.size(); ++q) (*totals)[q] = (*totals)[q] + at_once[q];
     (*totals)[System::hinge_work] = (*totals)[System::hinge_work] + impact.stop_work;
-  }
-  y[System::shaft] = y[System::shaft] + impact.shaft_speed;
+  });
+  y[System::shaft] = instant.omega;
   y[System::pitch + 1] = S(0.0);
   return y;
 }
@@ -84,10 +84,17 @@ void event_transition(const System& system, const typename System::Real& x, type
     signs[System::held] = S(1.0);
     signs[System::turn] = -side<System>(y);
   } else {
-    y = after_impact(system, x, y, totals);
+    y = after_impact(system, x, y, signs, totals);
     signs[System::impacts] = signs[System::impacts] + S(1.0);
+    system.shaft_after_impact(x, y, signs);
     hold_or_leave(system, x, y, signs);
   }
+}
+
+/// True where an impact lies between steps with these signs.
+template <class System>
+bool has_impact(const typename System::Signs& from, const typename System::Signs& to) {
+  return value_of(from[System::impacts]) != value_of(to[System::impacts]);
 }
 
 /// A solution next to a recorded one that met a stop at x: it meets it a little earlier or later.
@@ -96,11 +103,11 @@ void reset_map(const System& system, const typename System::Real& x, typename Sy
                const typename System::Signs& from, const typename System::Signs& to,
                typename System::Quadrature* totals) {
   using S = typename System::Real;
-  if (value_of(from[System::impacts]) != value_of(to[System::impacts])) {
+  if (has_impact<System>(from, to)) {
     const auto before = system.template rates<quadratures>(x, y, from);
     const S late = (side<System>(y) * system.vehicle.pitch.hinge.stop - y[System::pitch]) / before.dy[System::pitch];
     for (std::size_t n = 0; n < y.size(); ++n) y[n] = y[n] + before.dy[n] * late;
-    y = after_impact(system, S(x + late), y, quadratures ? totals : nullptr);
+    y = after_impact(system, S(x + late), y, from, quadratures ? totals : nullptr);
     const auto after = system.template rates<quadratures>(S(x + late), y, to);
     for (std::size_t n = 0; n < y.size(); ++n) y[n] = y[n] - after.dy[n] * late;
     if constexpr (quadratures) {

@@ -3,10 +3,7 @@
 
 #include <variant>
 
-#include "wingbeat/cycle/crank_system.hpp"
-#include "wingbeat/cycle/direct_system.hpp"
-#include "wingbeat/cycle/pitch_crank_system.hpp"
-#include "wingbeat/cycle/pitch_direct_system.hpp"
+#include "wingbeat/cycle/cycle_system.hpp"
 #include "wingbeat/cycle/record.hpp"
 
 namespace wingbeat {

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "wingbeat/cycle/statics.hpp"
-#include "wingbeat/vehicle/motion.hpp"
+#include "wingbeat/vehicle/dynamics.hpp"
 
 namespace wingbeat {
 
@@ -19,58 +19,6 @@ namespace wingbeat {
 template <template <Scalar> class V, Scalar S>
 S stall_torque(const V<S>& v) {
   return v.motor.torque_constant * v.voltage / circuit_resistance(v);
-}
-
-/// T_c, the constant friction that holds the motor at rest, its own included [N m]; that of the mechanism as the motor
-/// meets it through the gearbox. With up(T) of torque_before_gear(), \f$\operatorname{up}(T) = T\f$ without a loss
-/// there:
-/// \f[
-/// \operatorname{up}(T_\mathrm{c}) + T_\mathrm{c,m}
-/// \f]
-template <template <Scalar> class V, Scalar S>
-S breakaway_torque(const V<S>& v) {
-  return torque_before_gear(v.motor, v.friction.torque) + v.motor.friction_torque;
-}
-
-/// The rod force at rest [N] under the springs' moment N_w k beta [N m] (model.md section 2, "Not flapping").
-/// \f[
-/// F_\mathrm{s} = \frac{N_\mathrm{w} k \beta}{g}
-/// \f]
-template <Scalar S>
-S static_rod_force(const CrankKinematics<S>& k, const S& N_k_beta) {
-  return N_k_beta / k.wing_jacobian;
-}
-
-/// What friction can hold at rest [N m], \f$T_\mathrm{c}\f$ being breakaway_torque():
-/// \f$\mu r_\mathrm{e} |F_\mathrm{s}| + T_\mathrm{c}\f$.
-template <template <Scalar> class V, Scalar S>
-S holding_torque(const V<S>& v, const S& F_s) {
-  using std::abs;
-  return v.friction.radius * abs(F_s) + breakaway_torque(v);
-}
-
-/// Torques of the motor [N m] between which a crank stands. Behind a gearbox that loses torque the motor needs more
-/// than the load to start the crank either way, so that the gearbox helps to hold it (model.md section 9). With up(T)
-/// of torque_before_gear() and the load \f$T_\mathrm{x}\f$:
-/// \f[
-/// \begin{aligned}
-/// T_\mathrm{high} &= T_\mathrm{c,m} + \operatorname{up}\left( F_\mathrm{s} h + T_\mathrm{x}
-/// + \mu r_\mathrm{e} |F_\mathrm{s}| + T_\mathrm{c} \right) \cr
-/// T_\mathrm{low} &= -T_\mathrm{c,m} - \operatorname{up}\left( -F_\mathrm{s} h - T_\mathrm{x}
-/// + \mu r_\mathrm{e} |F_\mathrm{s}| + T_\mathrm{c} \right)
-/// \end{aligned}
-/// \f]
-template <Scalar S>
-struct StandingTorques {
-  S low, high;
-};
-template <template <Scalar> class V, Scalar S>
-StandingTorques<S> standing_torques(const V<S>& v, const CrankKinematics<S>& k, const S& F_s) {
-  using std::abs;
-  const S load = F_s * k.crank_jacobian + v.load_torque, friction = v.friction.radius * abs(F_s) + v.friction.torque;
-  const S own = v.motor.friction_torque;
-  return {-torque_before_gear(v.motor, S(friction - load)) - own,
-          torque_before_gear(v.motor, S(load + friction)) + own};
 }
 
 /// Torque that would start the crank forward from rest [N m], `torque` T being the motor's; behind a gearbox what the

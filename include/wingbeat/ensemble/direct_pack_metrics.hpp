@@ -19,7 +19,7 @@ auto DirectPackOrbit<L, N>::read() -> Cycle {
 template <class L, int N>
 template <bool has_added_mass>
 void DirectPackOrbit<L, N>::read_nodes(Cycle& cycle) {
-  const Branch<L> upward = {L(1.0), L(1.0), L(1.0), L(1.0)};
+  const Mode<L> upward;
   std::array<L, 6> sums;
   sums.fill(L(0.0));
   constexpr std::array which = {Integral::current_square, Integral::speed_square, Integral::electrical_work,

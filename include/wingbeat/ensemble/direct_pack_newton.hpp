@@ -50,10 +50,9 @@ template <class L, int N>
 template <bool has_added_mass>
 Motion<L> DirectPackOrbit<L, N>::motion_of(const L& beta, const L& omega, const L& i, const L& v) const {
   const L N_k_beta = vehicle_.wing_count * vehicle_.spring.stiffness * beta;
-  const Branch<L> upward = {L(1.0), L(1.0), L(1.0), L(1.0)};
-  return motion_on(vehicle_,
-                   terms_at<has_added_mass>(vehicle_, direct_kinematics<L>(), N_k_beta, omega, i, v, L(1.0), L(1.0)), i,
-                   v, upward);
+  const Mode<L> upward;
+  const MotionState<L> instant{{direct_kinematics<L>(), N_k_beta}, omega, i, v};
+  return motion_on(vehicle_, terms_at<has_added_mass>(vehicle_, instant, upward), upward);
 }
 
 template <class L, int N>

@@ -43,7 +43,7 @@ struct HalfCycle {
   S half;              ///< +1: crank angle u, stroke upward; -1: crank angle pi + u, stroke downward
   bool has_every_law;  ///< whether added mass, coefficient tables or stops of the pitching count: see aero_loads()
   S inductive_drop = S(0.0);  ///< N = 1: L_a di/dt [V], which a small inductance takes from the voltage
-  S pitching = S(1.0);        ///< as in Branch
+  S pitching = S(1.0);        ///< as in Mode
 
   S current(const State& y) const {
     if constexpr (N == 2) {
@@ -59,7 +59,7 @@ struct HalfCycle {
   }
   Configuration<S> configuration_of(const CrankKinematics<S>& k) const { return {k, spring_moment(vehicle, k)}; }
 
-  Branch<S> branch(const S& force) const { return {half, force, S(1.0), S(1.0), pitching}; }
+  Mode<S> mode(const S& force) const { return {half, force, S(1.0), S(1.0), pitching}; }
 
   /// pitch_margin() of the wings [rad].
   S pitch_margin_at(const Configuration<S>& configuration, const State& y) const {
@@ -77,21 +77,21 @@ struct HalfCycle {
     const IntermediateTerms<S> terms =
         has_every_law ? terms_by_every_law(configuration, y, i, v_t, sign_of(pitch_margin_at(configuration, y)))
                       : terms_of<false>(configuration, y, i, v_t, S(1.0));
-    return motion_on(vehicle, terms, i, v_t, branch(sign_of(terms.force_switch)));
+    return motion_on(vehicle, terms, mode(sign_of(terms.force_switch)));
   }
 
   template <bool every_law>
   [[gnu::always_inline]] IntermediateTerms<S> terms_of(const Configuration<S>& configuration, const State& y,
                                                        const S& i, const S& v_t, const S& on_pitching) const {
-    return terms_at<every_law>(vehicle, configuration.kinematics, configuration.spring_moment, y[0], i, v_t, half,
-                               S(1.0), on_pitching);
+    return terms_at<every_law>(vehicle, MotionState<S>{configuration, y[0], i, v_t},
+                               Mode<S>{half, S(1.0), S(1.0), S(1.0), on_pitching});
   }
   template <bool every_law>
   [[gnu::always_inline]] Motion<S> motion_of(const Configuration<S>& configuration, const State& y,
                                              const S& force) const {
     const S i = current(y);
     const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    return motion_on(vehicle, terms_of<every_law>(configuration, y, i, v_t, pitching), i, v_t, branch(force));
+    return motion_on(vehicle, terms_of<every_law>(configuration, y, i, v_t, pitching), mode(force));
   }
 
   // Out of the way of vehicles without: a call in the midst of an evaluation costs registers.
@@ -112,7 +112,7 @@ struct HalfCycle {
     if constexpr (N == 2) r.dy[1] = m.inductive_voltage * per_inductance * per_omega;
     r.switches[0] = m.force_switch;
     if constexpr (quadratures) {
-      const CycleIntegrals<S> in_time = integrands(m, y[0], branch(force));
+      const CycleIntegrals<S> in_time = integrands(m, y[0], mode(force));
       for (std::size_t q = 0; q < pack_integrals.size(); ++q) {
         r.dq[q] = in_time[std::size_t(pack_integrals[q])] * per_omega;
       }

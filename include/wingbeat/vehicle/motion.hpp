@@ -7,15 +7,24 @@
 
 namespace wingbeat {
 
-/// Which smooth branch of the kinked equations holds, each +-1.
+/// Which smooth branch of the kinked equations holds, and what holds still: each +-1.
 template <Scalar S>
-struct Branch {
-  S stroke;             ///< sign of beta'
-  S force;              ///< sign of the rod force F
-  S direction;          ///< sign of omega; +1 in steady flapping
-  S stored_power;       ///< sign of (N_w J_w beta'' + N_w k beta) beta', for the reactive power (eq 23) alone
-  S pitching = S(1.0);  ///< -1 where the angle of attack is at its lower bound
-  S gear = S(1.0);      ///< sign of T_g omega: -1 where the load drives the motor
+struct Mode {
+  S stroke = S(1.0);        ///< sign of beta'
+  S force = S(1.0);         ///< sign of the rod force F
+  S direction = S(1.0);     ///< sign of omega, of a shaft that is at rest the one it leaves in; +1 in steady flapping
+  S stored_power = S(1.0);  ///< sign of (N_w J_w beta'' + N_w k beta) beta', for the reactive power (eq 23) alone
+  S pitching = S(1.0);      ///< -1 where the angle of attack is at its lower bound
+  S gear = S(1.0);          ///< sign of T_g omega: -1 where the load drives the motor
+  S turn = S(1.0);          ///< sign of psi', of wings that pitch on hinges
+  S held = S(1.0);          ///< -1 where a stop holds such wings
+  S slip = S(1.0);          ///< -1 where friction holds crank or shaft
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.stroke, self.force, self.direction, self.stored_power, self.pitching, self.gear, self.turn,
+               self.held, self.slip);
+  }
 };
 
 /// Everything that acts at one instant.
@@ -76,15 +85,45 @@ template <template <Scalar> class V, Scalar S>
   return configuration;
 }
 
+/// An instant as the equations of motion take it: where everything is, how it moves, what drives it.
+template <Scalar S>
+struct MotionState {
+  Configuration<S> configuration;
+  S omega;                    ///< speed of crank or shaft [rad/s]
+  S current;                  ///< i [A]
+  S voltage;                  ///< v at the motor's terminals [V]
+  S pitch_angle = S(0.0);     ///< psi, of wings that pitch on hinges [rad]
+  S pitch_velocity = S(0.0);  ///< psi' [rad/s]
+};
+
+/// What a stroke is to its drive, springs apart: the wings ask for the moment (inertia) beta'' + moment.
+template <Scalar S>
+struct StrokeLoads {
+  AeroLoads<S> aero;  ///< of all wings
+  S inertia;          ///< I [kg m2]
+  S moment;           ///< M_0 [N m]
+};
+
+/// StrokeLoads of wings under the pitch law, `every_law` as in aero_loads().
+/// \f[
+/// I = N_\mathrm{w} J_\mathrm{w} + J_\mathrm{am}, \qquad M_0 = M_\mathrm{aero}
+/// \f]
+template <bool every_law = true, template <Scalar> class V, Scalar S>
+[[gnu::always_inline]] inline StrokeLoads<S> stroke_loads(const V<S>& v, const S& stroke_velocity,
+                                                          const Mode<S>& mode) {
+  const AeroLoads<S> aero = aero_loads<every_law>(v.wings, stroke_velocity, mode.stroke, mode.pitching);
+  S inertia = v.wing_count * v.wing_inertia;
+  if constexpr (every_law) inertia = inertia + aero.added_inertia;
+  return {aero, inertia, aero.moment};
+}
+
 /// What is known of an instant before the sign of the rod force.
 template <Scalar S>
 struct IntermediateTerms {
-  CrankKinematics<S> kinematics;
-  S omega;  ///< crank speed [rad/s]
+  MotionState<S> instant;
   MotorLoads<S> motor;
   S stroke_velocity;  ///< beta' [rad/s]
   AeroLoads<S> aero;  ///< of all wings
-  S spring_moment;    ///< N_w k beta [N m]
   S load_free;        ///< friction of the mechanism that does not depend on F [N m]
   S drive;            ///< K i - b omega - T_c,m - load_free - T_x [N m]; the motor's share of it behind a gearbox
   S gear_ratio;       ///< e, torque behind the gearbox over torque before it [1]
@@ -94,12 +133,9 @@ struct IntermediateTerms {
   S force_switch;  ///< e J C_g + A_g drive: has the sign of F on either branch while there is one solution [N m kg m2]
 };
 
-/// The instant at crank speed omega [rad/s] and current i [A] under the terminal voltage v_t [V], N_k_beta being the
-/// spring_moment() there, of wings that ask (inertia) beta'' + moment of the stroke, springs apart; `aero` is what the
-/// air does to them, `direction` the sign of omega, `gear` as in Branch. The wings' equation (1, 21) gives the rod
-/// force as \f$F = A \dot\omega + C\f$, with the inertia \f$I\f$ and the moment \f$M_0\f$, under the pitch law
-/// \f$I = N_\mathrm{w} J_\mathrm{w}\f$ with the added mass and \f$M_0 = M_\mathrm{aero}\f$. The torque D drives the
-/// crank before the rod force acts, e being that of gear_torque_ratio(), \f$T_\mathrm{l}\f$ that of
+/// The instant under the loads of the stroke; of `mode` the signs of omega and gear torque matter. The wings' equation
+/// (1, 21) gives the rod force as \f$F = A \dot\omega + C\f$, with the loads \f$I\f$ and \f$M_0\f$. The torque D
+/// drives the crank before the rod force acts, e being that of gear_torque_ratio(), \f$T_\mathrm{l}\f$ that of
 /// load_free_friction() and \f$T_\mathrm{x}\f$ the load's:
 /// \f[
 /// \begin{aligned}
@@ -108,22 +144,19 @@ struct IntermediateTerms {
 /// \end{aligned}
 /// \f]
 template <template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline IntermediateTerms<S> terms_under(const V<S>& v, const CrankKinematics<S>& k,
-                                                               const S& N_k_beta, const S& omega, const S& i,
-                                                               const S& v_t, const S& direction, const S& gear,
-                                                               const AeroLoads<S>& aero, const S& inertia,
-                                                               const S& moment) {
+[[gnu::always_inline]] inline IntermediateTerms<S> terms_under(const V<S>& v, const MotionState<S>& instant,
+                                                               const StrokeLoads<S>& loads, const Mode<S>& mode) {
+  const CrankKinematics<S>& k = instant.configuration.kinematics;
   IntermediateTerms<S> terms;
-  terms.kinematics = k;
-  terms.omega = omega;
-  terms.motor = motor_loads(v.motor, v_t, i, omega);
-  terms.stroke_velocity = k.stroke_slope * omega;
-  terms.aero = aero;
-  terms.spring_moment = N_k_beta;
+  terms.instant = instant;
+  terms.motor = motor_loads(v.motor, instant.voltage, instant.current, instant.omega);
+  terms.stroke_velocity = k.stroke_slope * instant.omega;
+  terms.aero = loads.aero;
   // The motor's own friction acts before the gearbox.
-  const S mechanism = load_free_friction(v.friction, omega, direction), own = direction * v.motor.friction_torque;
+  const S mechanism = load_free_friction(v.friction, instant.omega, mode.direction);
+  const S own = mode.direction * v.motor.friction_torque;
   terms.load_free = mechanism;
-  terms.gear_ratio = gear_torque_ratio(v.motor, gear);
+  terms.gear_ratio = gear_torque_ratio(v.motor, mode.gear);
   terms.inertia = v.motor.inertia;
   terms.drive = terms.motor.torque - terms.motor.drag_torque - (mechanism + own);
   if (has_gear_loss(v.motor)) {
@@ -134,26 +167,22 @@ template <template <Scalar> class V, Scalar S>
   if constexpr (ScalarTraits<S>::reads_tables) terms.drive = terms.drive - v.load_torque;
 
   // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
-  terms.A_g = inertia * k.stroke_slope;
-  terms.C_g = inertia * k.stroke_second_derivative * square(omega) + moment + terms.spring_moment;
+  terms.A_g = loads.inertia * k.stroke_slope;
+  terms.C_g = loads.inertia * k.stroke_second_derivative * square(instant.omega) + loads.moment +
+              instant.configuration.spring_moment;
   terms.force_switch = terms.inertia * terms.C_g + terms.A_g * terms.drive;
   return terms;
 }
 
-/// terms_under() of wings under the pitch law: `stroke` and `direction` are the signs of beta' and omega (model.md
-/// section 2), `pitching` and `gear` as in Branch, `every_law` as in aero_loads().
+/// terms_under() of wings under the pitch law, `every_law` as in aero_loads().
 template <bool every_law = true, template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline IntermediateTerms<S> terms_at(const V<S>& v, const CrankKinematics<S>& k,
-                                                            const S& N_k_beta, const S& omega, const S& i, const S& v_t,
-                                                            const S& stroke, const S& direction,
-                                                            const S& pitching = S(1.0), const S& gear = S(1.0)) {
-  const AeroLoads<S> aero = aero_loads<every_law>(v.wings, S(k.stroke_slope * omega), stroke, pitching);
-  S inertia = v.wing_count * v.wing_inertia;
-  if constexpr (every_law) inertia = inertia + aero.added_inertia;
-  return terms_under<V, S>(v, k, N_k_beta, omega, i, v_t, direction, gear, aero, inertia, aero.moment);
+[[gnu::always_inline]] inline IntermediateTerms<S> terms_at(const V<S>& v, const MotionState<S>& instant,
+                                                            const Mode<S>& mode) {
+  const S stroke_velocity = instant.configuration.kinematics.stroke_slope * instant.omega;
+  return terms_under(v, instant, stroke_loads<every_law>(v, stroke_velocity, mode), mode);
 }
 
-/// Rod force and accelerations of an instant, on a given branch (model.md section 2, eqs 1, 5-11, 21). With A, C and
+/// Rod force and accelerations of an instant, in a given mode (model.md section 2, eqs 1, 5-11, 21). With A, C and
 /// the driving torque D of terms_under(), and \f$s = \operatorname{sign} F \operatorname{sign}\omega\f$ on that
 /// branch:
 /// \f[
@@ -165,38 +194,38 @@ template <bool every_law = true, template <Scalar> class V, Scalar S>
 /// \end{aligned}
 /// \f]
 template <template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const IntermediateTerms<S>& terms, const S& i,
-                                                  const S& v_t, const Branch<S>& branch) {
+[[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const IntermediateTerms<S>& terms,
+                                                  const Mode<S>& mode) {
   Motion<S> m;
-  m.kinematics = terms.kinematics;
+  m.kinematics = terms.instant.configuration.kinematics;
   const CrankKinematics<S>& k = m.kinematics;
   const S J = terms.inertia;
   const S g = k.wing_jacobian;
-  const S omega2 = square(terms.omega);
+  const S omega2 = square(terms.instant.omega);
   // mu r_e |F| sign(omega) = s mu r_e F with s = sign(F) sign(omega), on this branch.
-  const S lever = k.crank_jacobian + branch.force * branch.direction * v.friction.radius;
+  const S lever = k.crank_jacobian + mode.force * mode.direction * v.friction.radius;
   const S inertia_g = J * g + terms.A_g * lever;
   const S divisor = inverse_of(inertia_g);
 
-  m.current = i;
-  m.voltage = v_t;
+  m.current = terms.instant.current;
+  m.voltage = terms.instant.voltage;
   m.stroke_velocity = terms.stroke_velocity;
   m.aero = terms.aero;
   m.force_switch = terms.force_switch;
   m.rod_force = terms.force_switch * divisor;
   m.crank_acceleration = (terms.drive * g - terms.C_g * lever) * divisor;
   m.stroke_acceleration = k.stroke_slope * m.crank_acceleration + k.stroke_second_derivative * omega2;
-  m.friction_torque = load_friction(v.friction, branch.force * m.rod_force, branch.direction) + terms.load_free;
+  m.friction_torque = load_friction(v.friction, mode.force * m.rod_force, mode.direction) + terms.load_free;
   m.motor_torque = m.rod_force * k.crank_jacobian + m.friction_torque;
   if constexpr (ScalarTraits<S>::reads_tables) m.motor_torque = m.motor_torque + v.load_torque;
   m.gear_torque = m.gear_loss = S(0.0);
   if (has_gear_loss(v.motor)) {
     m.gear_torque =
-        branch.direction * (terms.motor.torque - terms.motor.drag_torque - v.motor.inertia * m.crank_acceleration) -
+        mode.direction * (terms.motor.torque - terms.motor.drag_torque - v.motor.inertia * m.crank_acceleration) -
         v.motor.friction_torque;
-    m.gear_loss = (S(1.0) - terms.gear_ratio) * m.gear_torque * branch.direction * terms.omega;
+    m.gear_loss = (S(1.0) - terms.gear_ratio) * m.gear_torque * mode.direction * terms.instant.omega;
   }
-  m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + terms.spring_moment;
+  m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + terms.instant.configuration.spring_moment;
   m.inductive_voltage = terms.motor.inductive_voltage;
   return m;
 }
@@ -211,21 +240,10 @@ CrankKinematics<S> direct_kinematics() {
   return {S(0.0), S(0.0), S(1.0), S(0.0), S(1.0), S(1.0)};
 }
 
-/// Rod force and accelerations in a configuration, at crank speed omega [rad/s] and current i [A] under the terminal
-/// voltage v_t [V], on a given branch.
+/// What acts at an instant on wings under the pitch law, in a given mode.
 template <template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const Configuration<S>& configuration, const S& omega,
-                                                  const S& i, const S& v_t, const Branch<S>& branch) {
-  const IntermediateTerms<S> terms = terms_at(v, configuration.kinematics, configuration.spring_moment, omega, i, v_t,
-                                              branch.stroke, branch.direction, branch.pitching, branch.gear);
-  return motion_on(v, terms, i, v_t, branch);
-}
-
-/// motion_at() at the crank angle theta, given by sine and cosine.
-template <template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const S& sin_theta, const S& cos_theta, const S& omega,
-                                                  const S& i, const S& v_t, const Branch<S>& branch) {
-  return motion_at(v, configuration_at(v, sin_theta, cos_theta), omega, i, v_t, branch);
+[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const MotionState<S>& instant, const Mode<S>& mode) {
+  return motion_on(v, terms_at(v, instant, mode), mode);
 }
 
 /// Voltage at the motor terminals, \f$v - R_\mathrm{i} i\f$ [V], under the current i [A], where the supply drives

@@ -21,8 +21,8 @@ inline constexpr double standard_gravity = 9.80665;  ///< [m/s2], CGPM 1901
 
 /// The constants of one vehicle in one condition, all referred to the output shaft. Several motors with their
 /// transmissions and wings are one that acts as they do together (model.md section 13): its current, torques, forces
-/// and powers are the sums of theirs. The equations of motion and CrankSystem take any template V of the same
-/// members whose `transmission` satisfies the concept Transmission.
+/// and powers are the sums of theirs. The equations of motion and the system of a crank take any template V of
+/// the same members whose `transmission` satisfies the concept Transmission.
 template <Scalar S>
 struct Vehicle {
   S voltage;  ///< v that steady flapping sees [V], at the motor terminals where there is no source resistance
@@ -52,7 +52,7 @@ struct Vehicle {
 };
 
 /// True where pitch is a degree of freedom (model.md section 12) instead of following the stroke by the pitch law. The
-/// periodic systems of such vehicles are others: PitchCrankSystem, PitchDirectSystem.
+/// states of such vehicles are two more.
 template <Scalar S>
 bool pitches(const Vehicle<S>& v) {
   return value_of(v.pitch.pitch_inertia) > 0.0;

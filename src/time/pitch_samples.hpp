@@ -1,4 +1,4 @@
-// What the metrics of a crank's cycle need beside its quadratures and extremes where the wings pitch on hinges.
+// What the metrics of a cycle in time need beside its quadratures and extremes where the wings pitch on hinges.
 #pragma once
 
 #include <algorithm>
@@ -6,16 +6,16 @@
 #include <complex>
 #include <vector>
 
-#include "time/crank_model.hpp"
 #include "time/integrator.hpp"
+#include "time/time_model.hpp"
 #include "wingbeat/cycle/pitch_metrics.hpp"
 
 namespace wingbeat::detail {
 
 /// Samples and integrals of one cycle or several, whose duration is known at their end alone.
-class CrankPitchSamples {
+class PitchSamples {
  public:
-  void begin(const CrankModel& model) {
+  void begin(const TimeModel& model) {
     metrics_ = {0.0, 0.0, infinity, -infinity, 0.0, 0.0};
     lowest_psi_ = infinity;
     highest_psi_ = -infinity;
@@ -26,11 +26,11 @@ class CrankPitchSamples {
 
   /// The step from the time `from` [s] to where the model stands: pitch and angle of attack have their extremes at ends
   /// of steps.
-  void step_taken(const CrankModel& model, Integrator& steps, double from) {
+  void step_taken(const TimeModel& model, Integrator& steps, double from) {
     constexpr double nodes[] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
     constexpr double weights[] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                   0.2369268850561891};
-    const std::size_t pitch = model.pitch_at();
+    const std::size_t pitch = model.indices.pitch;
     const double half = 0.5 * (model.now.t - from), middle = from + half;
     double sign = 1.0;
     for (int k = 0; k < 5; ++k) {
@@ -38,7 +38,7 @@ class CrankPitchSamples {
       const double* y = steps.dense(t);
       const CrankKinematics<double> kinematics = model.kinematics(y[0]);
       const double psi = y[pitch], velocity = model.now.held ? 0.0 : y[pitch + 1];
-      points_.push_back({t, half * weights[k], stroke_angle(kinematics), psi});
+      points_.push_back({t, half * weights[k], stroke_angle_at(model.vehicle, kinematics, y[0]), psi});
       loss_ += half * weights[k] * hinge_loads(model.vehicle.pitch.hinge, psi, velocity).loss;
       const double stroke_velocity = kinematics.stroke_slope * y[1], stroke = sign_of(stroke_velocity);
       const PitchState<double> state = pitch_state<double>(psi, velocity, stroke_velocity);
@@ -56,7 +56,7 @@ class CrankPitchSamples {
   }
 
   /// After `cycles` cycles between two times [s].
-  void finish(const CrankModel& model, double start, double end, int cycles, Metrics<double>& metrics) {
+  void finish(const TimeModel& model, double start, double end, int cycles, Metrics<double>& metrics) {
     const double period = (end - start) / cycles;
     std::complex<double> stroke = 0.0, psi = 0.0;
     for (const Point& p : points_) {
@@ -72,7 +72,7 @@ class CrankPitchSamples {
     set_pitch_metrics(metrics_, model.vehicle.pitch, metrics);
   }
 
-  void add_to(StatusEvidence& evidence, const CrankModel& model) const {
+  void add_to(StatusEvidence& evidence, const TimeModel& model) const {
     if (model.vehicle.wings.air_density > 0.0) evidence.over_rotation = metrics_.over_rotation_of_moving();
   }
 

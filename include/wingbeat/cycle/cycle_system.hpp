@@ -1,0 +1,475 @@
+// The dynamic model of a vehicle as a periodic system: what solve/ integrates. A crank's cycle is a turn, its variable
+// the crank angle; a direct drive's is a period of its supply, its variable the phase of that. model.md sections 2, 6,
+// 12, 13.
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <concepts>
+#include <type_traits>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/cycle/configurations.hpp"
+#include "wingbeat/cycle/crank_turn.hpp"
+#include "wingbeat/cycle/energy_balance.hpp"
+#include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/cycle/pitch_stops.hpp"
+#include "wingbeat/cycle/supply_period.hpp"
+#include "wingbeat/solve/iterate.hpp"
+#include "wingbeat/vehicle/dynamics.hpp"
+
+namespace wingbeat {
+
+/// Where states, signs and integrals of a CycleSystem stand.
+template <bool turns_, bool on_hinges_, bool inductive_>
+struct CycleLayout {
+  static constexpr bool turns = turns_;          ///< a crank, else a direct drive
+  static constexpr bool on_hinges = on_hinges_;  ///< the wings pitch on hinges, else under the pitch law
+  static constexpr bool inductive = inductive_;  ///< the current is a state
+
+  // States: the stroke angle of a direct drive, speed, current, pitch angle and pitch velocity.
+  static constexpr std::size_t shaft = turns ? 0 : 1;  ///< its speed [rad/s]
+  static constexpr std::size_t current_state = shaft + 1, pitch = shaft + 1 + inductive;
+  static constexpr std::size_t state_count = pitch + (on_hinges ? 2 : 0);
+
+  // Switches: of a direct drive velocity and end of a standstill; rod force and gear torque; under the pitch law its
+  // bound, on hinges pitch velocity and stop; the stored moment, which causes no kink in the solution.
+  static constexpr std::size_t velocity = 0, release = 1;
+  static constexpr std::size_t force = turns ? 0 : 2, gear = force + 1;
+  static constexpr std::size_t pitching = gear + 1;
+  static constexpr std::size_t turn = gear + 1, stop = gear + 2;
+  static constexpr std::size_t stored = on_hinges ? stop + 1 : pitching + 1;
+  static constexpr std::size_t switch_count = stored + 1;
+  static constexpr int state_switches = int(stored);
+  // Signs behind theirs: of a crank stroke velocity, which nodes flip, of a direct drive -1 where friction holds the
+  // shaft; of wings on hinges -1 where a stop holds them, and the number of impacts so far.
+  static constexpr std::size_t stroke = switch_count, slip = switch_count;
+  static constexpr std::size_t held = switch_count + 1, impacts = switch_count + 2;
+  static constexpr std::size_t sign_count = switch_count + (on_hinges ? 3 : 1);
+
+  // Integrals behind those that all vehicles have: loss in the hinges [J]; chordwise_lift() [N s].
+  static constexpr std::size_t hinge_work = integral_count, chordwise = integral_count + 1;
+  static constexpr std::size_t quadrature_count = integral_count + (on_hinges ? 2 : 0);
+
+  /// Integrals whose error limits the steps. Not those that may vanish up to rounding.
+  static constexpr auto controlled_integrals = [] {
+    std::array<std::size_t, (turns ? 5 : 6) + (on_hinges ? 1 : 0)> which{};
+    std::size_t n = 0;
+    if (turns) which[n++] = std::size_t(Integral::time);
+    if (!turns) which[n++] = std::size_t(Integral::current_square);
+    if (!turns) which[n++] = std::size_t(Integral::speed_square);
+    for (const Integral each :
+         {Integral::friction_work, Integral::aero_work, Integral::reactive_work, Integral::lift}) {
+      which[n++] = std::size_t(each);
+    }
+    if (on_hinges) which[n++] = hinge_work;
+    return which;
+  }();
+
+  static constexpr bool contracts_slowly = !turns || on_hinges;
+  static constexpr bool state_jumps = on_hinges;
+};
+
+/// The system of vehicles of one kind. A crank's is valid while omega > 0. V: a Vehicle, or what has the same members
+/// with another transmission. With the acceleration of motion_on(), and i following omega without inductance:
+/// \f[
+/// \frac{\mathrm{d}\omega}{\mathrm{d}\theta} = \frac{\dot\omega}{\omega}, \qquad
+/// \frac{\mathrm{d}i}{\mathrm{d}\theta} = \frac{v - (R_\mathrm{a} + R_\mathrm{i})\, i - K \omega}{L_\mathrm{a} \omega},
+/// \qquad f = \left( \int_0^{2\pi} \frac{\mathrm{d}\theta}{\omega} \right)^{-1}
+/// \f]
+/// Of a direct drive the same equations in the phase of the supply, \f$\dot\varphi = 2 \pi f\f$, with
+/// \f$v = V \sin\varphi\f$. Friction that does not vanish with the speed, and a gearbox that loses torque, make its
+/// right-hand side jump where the velocity changes sign, and hold the shaft at rest between two torques of the motor
+/// (StandingTorques).
+template <Scalar S, bool turns_, bool on_hinges_, bool inductive_, class V = Vehicle<S>>
+struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
+                     std::conditional_t<turns_, CrankTurn<S>, SupplyPeriod<S>> {
+  using Layout = CycleLayout<turns_, on_hinges_, inductive_>;
+  using Base = std::conditional_t<turns_, CrankTurn<S>, SupplyPeriod<S>>;
+  using Real = S;
+  using State = std::array<S, Layout::state_count>;
+  using Quadrature = std::array<S, Layout::quadrature_count>;
+  using Switches = std::array<S, Layout::switch_count>;
+  using Signs = std::array<S, Layout::sign_count>;
+  using MotionHere = std::conditional_t<on_hinges_, PitchMotion<S>, Motion<S>>;
+  using Layout::stored, Layout::stroke, Layout::slip, Layout::held, Layout::hinge_work, Layout::chordwise;
+  using Layout::turns, Layout::on_hinges, Layout::inductive, Layout::shaft, Layout::current_state, Layout::pitch;
+  using Layout::velocity, Layout::release, Layout::force, Layout::gear, Layout::pitching, Layout::turn, Layout::stop;
+
+  V vehicle;
+  State typical;                   ///< size of each state, scale of errors; that of a crank's speed is the speed itself
+  S speed_floor = S(0.0);          ///< below this crank speed [rad/s] the crank counts as stopped
+  bool jumps_at_velocity = false;  ///< of a direct drive: at its reversals something other than the drag changes
+
+  CycleSystem() = default;
+  CycleSystem(const V& v, const State& size, const S& floor = S(0.0)) : vehicle(v), typical(size), speed_floor(floor) {
+    if constexpr (turns && std::same_as<S, double>) this->turn_at(reversals(v.transmission), stroke);
+    if constexpr (!turns) jumps_at_velocity = jumps_at_rest(v);
+  }
+
+  template <Scalar T>
+  auto cast() const {
+    const auto of_t = wingbeat::cast<T>(vehicle);
+    std::array<T, Layout::state_count> size;
+    for (std::size_t n = 0; n < size.size(); ++n) size[n] = T(typical[n]);
+    return CycleSystem<T, turns, on_hinges, inductive, std::remove_const_t<decltype(of_t)>>{of_t, size, T(speed_floor)};
+  }
+
+  bool admissible(const State& y) const {
+    if constexpr (turns) return all<S>(y[0] > speed_floor);
+    return true;
+  }
+  State error_scale(const State& y) const {
+    using std::abs;
+    State scale;
+    for (std::size_t n = 0; n < y.size(); ++n) scale[n] = abs(y[n]) + S(0.1) * typical[n];
+    if constexpr (turns) scale[shaft] = y[shaft];
+    return scale;
+  }
+
+  /// True where the current follows the speed so quickly, within a small part of a radian, that explicit steps would
+  /// have to be shorter for it than their accuracy asks for.
+  bool stiff(const State& y) const
+    requires(std::same_as<S, double> && turns_ && !on_hinges_ && inductive_)
+  {
+    return circuit_resistance(vehicle) > 24.0 * vehicle.motor.armature_inductance * y[0];
+  }
+
+  /// How many times smaller than what limits their errors (`scale`) the integrals of a cycle are: metrics are to be
+  /// accurate relative to themselves. A mean lift below a thousandth of its peak need not be.
+  double cancellation(const Quadrature& totals, const Quadrature& scale) const
+    requires(std::same_as<S, double> && turns_ && !on_hinges_)
+  {
+    constexpr double usual = 2.0, max_cancellation = 1e3;
+    double largest = 1.0;
+    // Near its speed without load a motor's current is the small difference of two large voltages.
+    const double charge = std::abs(totals[std::size_t(Integral::current)]);
+    const double drop = circuit_resistance(vehicle) * charge, back_emf = two_pi * vehicle.motor.torque_constant;
+    largest = std::max(largest, back_emf / (usual * drop + back_emf / max_cancellation));
+    for (const std::size_t q : Layout::controlled_integrals) {
+      if (scale[q] > 0.0)
+        largest = std::max(largest, scale[q] / (usual * std::abs(totals[q]) + scale[q] / max_cancellation));
+    }
+    return largest;
+  }
+
+  /// What the integrals of a closed cycle show of their errors, relative.
+  double imbalance(const Quadrature& totals) const
+    requires(std::same_as<S, double> && !on_hinges_)
+  {
+    return relative_energy_gap(vehicle, totals);
+  }
+
+  /// Rate of the independent variable [rad/s].
+  S phase_rate() const
+    requires(!turns_)
+  {
+    return S(two_pi) * vehicle.drive_frequency;
+  }
+  S phase_rate(const State& y) const {
+    if constexpr (turns) return y[0];
+    else return S(two_pi) * vehicle.drive_frequency;
+  }
+  /// Of the supply [V].
+  S voltage([[maybe_unused]] const S& x) const {
+    using std::sin;
+    if constexpr (turns) return vehicle.voltage;
+    else return vehicle.voltage * sin(x);
+  }
+  S current([[maybe_unused]] const S& x, const State& y) const {
+    if constexpr (inductive) return y[current_state];
+    else return algebraic_current(vehicle, voltage(x), y[shaft]);
+  }
+
+  using Base::stroke_angle;
+  S stroke_angle(const S& x, const State& y) const {
+    if constexpr (turns) return wingbeat::stroke_angle(configuration(x).kinematics);
+    else return y[0];
+  }
+  /// Of beta'.
+  static S stroke_sign(const auto& signs) { return signs[turns ? stroke : velocity]; }
+
+  bool jumps([[maybe_unused]] std::size_t k) const {
+    if constexpr (on_hinges) {
+      if (k == stop) return has_stop(vehicle.pitch.hinge);
+    }
+    if constexpr (!turns) return jumps_at_velocity && k <= release;
+    return false;
+  }
+
+  Signs start_signs(const State& y) const { return start_signs_at(S(0.0), y); }
+  /// Of a cycle that starts at x.
+  Signs start_signs_at([[maybe_unused]] const S& x, [[maybe_unused]] const State& y) const {
+    Signs signs;
+    signs.fill(S(1.0));
+    if constexpr (turns) {
+      signs[stroke] = S(this->first_stroke());
+    } else if (on_hinges || jumps_at_velocity) {
+      signs[velocity] = sign_of(y[shaft]);
+      if (jumps_at_velocity && value_of(y[shaft]) == 0.0) hold_or_move(x, y, signs);
+    }
+    if constexpr (on_hinges) {
+      if (pitch_stops::rests_at_stop(*this, y)) pitch_stops::hold_or_leave(*this, x, y, signs);
+    }
+    return signs;
+  }
+
+  /// Switch k is crossed. A shaft that comes to rest is held or turns back; wings meet a stop or leave it.
+  void event_transition(std::size_t k, const S& x, State& y, Signs& signs) const
+    requires(!turns_ && !on_hinges_)
+  {
+    if (jumps(k)) rest_or_release(k, x, y, signs);
+    else signs[k] = -signs[k];
+  }
+  void event_transition(std::size_t k, const S& x, State& y, Signs& signs, Quadrature* totals) const
+    requires on_hinges_
+  {
+    if (!jumps(k)) signs[k] = -signs[k];
+    else if (k == stop) pitch_stops::event_transition(*this, x, y, signs, totals);
+    else if constexpr (!turns) rest_or_release(k, x, y, signs);
+  }
+
+  /// A solution next to a recorded one that came to rest, or met a stop, at x: it does so a little earlier or later.
+  template <bool quadratures>
+  void reset_map(const S& x, State& y, const Signs& from, const Signs& to, Quadrature* totals) const
+    requires(!turns_ || on_hinges_)
+  {
+    reset_map_of<quadratures>(*this, x, y, from, to, totals);
+  }
+  /// That of a system that integrates more beside it.
+  template <bool quadratures, class System>
+  static void reset_map_of(const System& system, const S& x, State& y, const typename System::Signs& from,
+                           const typename System::Signs& to, typename System::Quadrature* totals) {
+    if constexpr (on_hinges) {
+      pitch_stops::reset_map<quadratures>(system, x, y, from, to, totals);
+      if (pitch_stops::has_impact<System>(from, to)) return;
+    }
+    if constexpr (!turns) {
+      if (!system.jumps_at_velocity) return;
+      const bool stuck = value_of(to[slip]) < 0.0;
+      const bool came_to_rest =
+          value_of(from[slip]) > 0.0 && (stuck || value_of(from[velocity]) != value_of(to[velocity]));
+      if (came_to_rest) {
+        const auto before = system.template rates<quadratures>(x, y, from);
+        const S late = -y[shaft] / before.dy[shaft];
+        const auto after = system.template rates<quadratures>(x, y, to);
+        for (std::size_t n = 0; n < y.size(); ++n) y[n] = y[n] + (before.dy[n] - after.dy[n]) * late;
+        if constexpr (quadratures) {
+          for (std::size_t q = 0; q < before.dq.size(); ++q) {
+            (*totals)[q] = (*totals)[q] + (before.dq[q] - after.dq[q]) * late;
+          }
+        }
+      }
+      if (stuck) y[shaft] = S(0.0);
+    }
+  }
+
+  /// After an impact of the wings: a shaft that it has brought to rest is held or turns back.
+  void shaft_after_impact([[maybe_unused]] const S& x, [[maybe_unused]] const State& y,
+                          [[maybe_unused]] Signs& signs) const {
+    if constexpr (!turns) {
+      if (jumps_at_velocity && value_of(y[shaft]) == 0.0) return hold_or_move(x, y, signs);
+      signs[velocity] = sign_of(y[shaft]);
+      signs[slip] = S(1.0);
+    }
+  }
+
+  static Mode<S> mode(const auto& signs) {
+    Mode<S> mode{.stroke = stroke_sign(signs),
+                 .force = signs[force],
+                 .direction = turns ? S(1.0) : signs[velocity],
+                 .stored_power = signs[stored] * stroke_sign(signs),
+                 .gear = signs[gear]};
+    if constexpr (on_hinges) {
+      mode.turn = signs[turn];
+      mode.held = signs[held];
+    } else {
+      mode.pitching = signs[pitching];
+    }
+    if constexpr (!turns) mode.slip = signs[slip];
+    return mode;
+  }
+
+  CrankKinematics<S> kinematics([[maybe_unused]] const S& x) const {
+    if constexpr (turns) return configuration(x).kinematics;
+    else return direct_kinematics<S>();
+  }
+  Configuration<S> configuration(const S& theta) const
+    requires turns_
+  {
+    using std::cos;
+    using std::sin;
+    return configuration_at(vehicle, S(sin(theta)), S(cos(theta)));
+  }
+  template <std::size_t count>
+  std::array<Configuration<S>, count> configurations(const S& theta, const S& h, const double (&c)[count]) const
+    requires(turns_ && std::same_as<S, double>)
+  {
+    std::array<double, count> angles;
+    for (std::size_t n = 0; n < count; ++n) angles[n] = theta + c[n] * h;
+    std::array<Configuration<S>, count> configurations;
+    if constexpr (std::same_as<V, Vehicle<double>>) {
+      configurations_at(vehicle, angles, configurations);
+    } else {
+      for (std::size_t n = 0; n < count; ++n) configurations[n] = configuration(angles[n]);
+    }
+    return configurations;
+  }
+
+  /// The instant of a crank in a configuration, or of a direct drive at a phase.
+  template <class At>
+  [[gnu::always_inline]] MotionState<S> instant(const At& at, const State& y,
+                                                [[maybe_unused]] const Signs& signs) const {
+    MotionState<S> instant;
+    if constexpr (turns) {
+      const S i = current(S(0.0), y);
+      instant = {at, y[shaft], i, terminal_voltage(vehicle, vehicle.voltage, i)};
+    } else {
+      const S i = current(at, y);
+      const S omega = value_of(signs[slip]) < 0.0 ? S(0.0) : y[shaft];
+      instant = {{direct_kinematics<S>(), vehicle.wing_count * vehicle.spring.stiffness * y[0]},
+                 omega,
+                 i,
+                 terminal_voltage(vehicle, voltage(at), i)};
+    }
+    if constexpr (on_hinges) {
+      instant.pitch_angle = y[pitch];
+      instant.pitch_velocity = select(signs[held] >= S(0.0), y[pitch + 1], S(0.0));
+    }
+    return instant;
+  }
+
+  [[gnu::always_inline]] MotionHere motion(const Configuration<S>& at, const State& y, const Signs& signs) const
+    requires turns_
+  {
+    return motion_of(instant(at, y, signs), mode(signs));
+  }
+  [[gnu::always_inline]] MotionHere motion(const S& x, const State& y, const Signs& signs) const {
+    if constexpr (turns) return motion(configuration(x), y, signs);
+    else return motion_of(instant(x, y, signs), mode(signs));
+  }
+
+  CycleExtremes<S> candidates(const Motion<S>& m, const State& y, const Signs& signs) const {
+    if constexpr (turns) return extreme_candidates(m, y[shaft], mode(signs));
+    else return extreme_candidates(m, m.stroke_velocity, mode(signs), y[0]);
+  }
+
+  template <bool quadratures>
+  solver::Rates<CycleSystem> rates(const S& x, const State& y, const Signs& signs) const {
+    if constexpr (turns) return rates<quadratures>(configuration(x), y, signs);
+    else return rates_at<quadratures>(x, y, signs);
+  }
+  template <bool quadratures>
+  solver::Rates<CycleSystem> rates(const Configuration<S>& at, const State& y, const Signs& signs) const
+    requires turns_
+  {
+    return rates_at<quadratures>(at, y, signs);
+  }
+
+ private:
+  [[gnu::always_inline]] MotionHere motion_of(const MotionState<S>& instant, const Mode<S>& mode) const {
+    if constexpr (on_hinges) {
+      return pitch_motion_at(vehicle, instant, mode);
+    } else {
+      Motion<S> m = motion_at(vehicle, instant, mode);
+      if constexpr (!turns) {
+        if (value_of(mode.slip) < 0.0) detail::stand_still(vehicle, S(0.0), m, instant.configuration.spring_moment);
+      }
+      return m;
+    }
+  }
+
+  template <bool quadratures, class At>
+  [[gnu::always_inline]] solver::Rates<CycleSystem> rates_at(const At& at, const State& y, const Signs& signs) const {
+    const MotionHere m = motion(at, y, signs);
+    const S per_rate = S(1.0) / phase_rate(y);
+    solver::Rates<CycleSystem> r;
+    if constexpr (!turns) r.dy[0] = m.stroke_velocity * per_rate;
+    r.dy[shaft] = m.crank_acceleration * per_rate;
+    if constexpr (inductive) r.dy[current_state] = m.inductive_voltage / vehicle.motor.armature_inductance * per_rate;
+    r.switches[force] = m.force_switch;
+    r.switches[gear] = has_gear_loss(vehicle.motor) ? m.gear_torque : S(1.0);
+    if constexpr (!turns) {
+      const bool stuck = value_of(signs[slip]) < 0.0;
+      r.switches[velocity] = stuck ? signs[velocity] : y[shaft];
+      r.switches[release] = stuck ? holding_margin(at, y, signs) : S(1.0);
+      if (!force_has_branches(vehicle)) r.switches[force] = S(1.0);
+      if (stuck) r.switches[force] = signs[force], r.switches[gear] = signs[gear];
+    }
+    if constexpr (on_hinges) {
+      const bool at_stop = pitch_stops::is_held<CycleSystem>(signs);
+      r.dy[pitch] = at_stop ? S(0.0) : S(y[pitch + 1] * per_rate);
+      r.dy[pitch + 1] = m.pitch_acceleration * per_rate;
+      r.switches[turn] = at_stop ? signs[turn] : y[pitch + 1];
+      r.switches[stop] = pitch_stops::switch_of(*this, m, y, signs);
+    } else {
+      r.switches[pitching] = m.aero.pitch_margin;
+    }
+    r.switches[stored] = m.stored_moment;
+    if constexpr (quadratures) {
+      const CycleIntegrals<S> in_time = integrands<S>(m, turns ? y[shaft] : m.stroke_velocity, mode(signs));
+      for (std::size_t q = 0; q < in_time.size(); ++q) r.dq[q] = in_time[q] * per_rate;
+      if constexpr (on_hinges) {
+        r.dq[hinge_work] = m.hinge_loss * per_rate;
+        r.dq[chordwise] = m.chordwise_lift * per_rate;
+      }
+    }
+    return r;
+  }
+
+  /// The motor's torque on a shaft at rest, and between which torques it stands [N m].
+  struct AtRest {
+    S torque;
+    StandingTorques<S> torques;
+  };
+  AtRest at_rest(const S& phi, State y, const Signs& signs) const {
+    y[shaft] = S(0.0);
+    const MotionState<S> here = instant(phi, y, signs);
+    S moment = here.configuration.spring_moment;
+    if constexpr (on_hinges) moment = moment + wings_standing(vehicle, here, mode(signs)).moment;
+    const CrankKinematics<S>& k = here.configuration.kinematics;
+    return {vehicle.motor.torque_constant * here.current, standing_torques(vehicle, k, static_rod_force(k, moment))};
+  }
+  /// Positive while friction holds the shaft [N m].
+  S holding_margin(const S& phi, const State& y, const Signs& signs) const {
+    const AtRest rest = at_rest(phi, y, signs);
+    const S above = rest.torques.high - rest.torque, below = rest.torque - rest.torques.low;
+    return value_of(above) < value_of(below) ? above : below;
+  }
+
+  void rest_or_release(std::size_t k, const S& phi, State& y, Signs& signs) const {
+    if (k == velocity) {
+      y[shaft] = S(0.0);
+      hold_or_move(phi, y, signs);
+    } else {
+      signs[slip] = S(1.0);
+      signs[velocity] = direction_from_rest(at_rest(phi, y, signs));
+    }
+  }
+  void hold_or_move(const S& phi, const State& y, Signs& signs) const {
+    const AtRest rest = at_rest(phi, y, signs);
+    const double torque = value_of(rest.torque);
+    if (torque >= value_of(rest.torques.low) && torque <= value_of(rest.torques.high)) {
+      signs[slip] = S(-1.0);
+    } else {
+      signs[slip] = S(1.0);
+      signs[velocity] = direction_from_rest(rest);
+    }
+  }
+  static S direction_from_rest(const AtRest& rest) {
+    return sign_of(S(rest.torque - S(0.5) * (rest.torques.low + rest.torques.high)));
+  }
+};
+
+/// A crank with wings under the pitch law, and with wings that pitch on hinges; a direct drive with either. N: the
+/// number of states, one more with an inductance.
+template <Scalar S, int N, class V = Vehicle<S>>
+using CrankSystem = CycleSystem<S, true, false, N == 2, V>;
+template <Scalar S, int N>
+using PitchCrankSystem = CycleSystem<S, true, true, N == 4>;
+template <Scalar S, int N>
+using DirectSystem = CycleSystem<S, false, false, N == 3>;
+template <Scalar S, int N>
+using PitchDirectSystem = CycleSystem<S, false, true, N == 5>;
+
+}  // namespace wingbeat

@@ -1,0 +1,214 @@
+// What happens to a vehicle in time between smooth pieces: rod force and shaft change direction, friction holds and
+// lets go, wings meet a stop; model.md sections 2, 12, 13.
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "time/time_model.hpp"
+
+namespace wingbeat::detail {
+
+StandingTorques<double> TimeModel::standing_torques(double angle) const {
+  const Configuration<double> here = configuration_at_angle(vehicle, angle);
+  return wingbeat::standing_torques(vehicle, here.kinematics,
+                                    wingless ? 0.0 : static_rod_force(here.kinematics, here.spring_moment));
+}
+
+StandingTorques<double> TimeModel::standing_torques(const double* y) const {
+  if (!indices.pitching) return standing_torques(y[0]);
+  const MotionState<double> here = instant(now.t, y);
+  const double moment = here.configuration.spring_moment + wings_standing(vehicle, here, mode()).moment;
+  return wingbeat::standing_torques(vehicle, here.configuration.kinematics,
+                                    static_rod_force(here.configuration.kinematics, moment));
+}
+
+double TimeModel::net_static_torque(double angle, double i) const {
+  const StandingTorques<double> torques = standing_torques(angle);
+  return vehicle.motor.torque_constant * i - 0.5 * (torques.low + torques.high);
+}
+
+double TimeModel::holding_torque(double angle) const {
+  const StandingTorques<double> torques = standing_torques(angle);
+  return 0.5 * (torques.high - torques.low);
+}
+
+void TimeModel::choose_force_branch() {
+  if (wingless || !force_matters) return;
+  if (now.force_known) {
+    now.force_known = false;
+    return;
+  }
+  double y[max_unknowns];
+  unknowns(y);
+  double value = motion(now.t, y).force_switch / force_scale;
+  if (std::abs(value) < 1e-9) {
+    // The sign is about to be decided: look a little ahead, by the midpoint rule.
+    const double ahead = 1e-5 * time_scale;
+    double dy[max_unknowns] = {}, mid[max_unknowns] = {}, dmid[max_unknowns] = {};
+    rates(now.t, y, dy, false);
+    for (int k = 0; k < coupled; ++k) mid[k] = y[k] + 0.5 * ahead * dy[k];
+    rates(now.t + 0.5 * ahead, mid, dmid, false);
+    for (int k = 0; k < coupled; ++k) y[k] += ahead * dmid[k];
+    value = motion(now.t + ahead, y).force_switch;
+  }
+  now.force = sign_of(value);
+}
+
+std::array<double, TimeModel::indicator_count> TimeModel::indicators(double t, const double* y) const {
+  std::array<double, indicator_count> values;
+  values.fill(1.0);
+  if (now.stuck) {
+    const StandingTorques<double> torques = standing_torques(y);
+    const double K = vehicle.motor.torque_constant, torque = K * current_of(t, y);
+    const double hold = 0.5 * (torques.high - torques.low);
+    values[standstill] =
+        std::min(torques.high - torque, torque - torques.low) / (indices.pitching ? K * current_scale : hold);
+  } else if (jumps_) {
+    values[standstill] = y[1] / speed_scale;
+  }
+  if (now.stuck && !indices.pitching) return values;
+  PitchMotion<double> m;
+  if (!wingless) m = motion(t, y);
+  if (indices.pitching) {
+    values[stop] = stop_room(y, m);
+    values[turn] = now.held ? 1.0 : y[indices.pitch + 1] / pitch_velocity_scale;
+  }
+  if (now.stuck) return values;
+  if (!direct) {
+    values[jam] = indices.pitching ? std::min(1.0, uniqueness_at(y) - smallest_margin)
+                                   : std::min({1.0, jam_above - y[0], y[0] - jam_below});
+  }
+  if (wingless) return values;
+  if (force_matters) values[force] = m.force_switch / force_scale;
+  values[stored_moment] = m.stored_moment / (force_scale / vehicle.motor.inertia);
+  values[reversal] =
+      direct ? y[1] / speed_scale : m.kinematics.stroke_slope / typical_stroke_slope(vehicle.transmission);
+  return values;
+}
+
+/// At a standstill it is held, or moves on in the direction of the torque.
+void TimeModel::begin_piece() {
+  resume();
+  // Without inductance the current jumps with the voltage, and what friction held may not be held any more.
+  if (now.jammed || !jumps_ || (now.stuck && indices.inductive)) return;
+  const bool leaving = std::exchange(now.leaving, false);
+  if (now.moving.speed != 0.0) {
+    now.direction = sign_of(now.moving.speed);
+  } else if (!leaving) {
+    if (!indices.inductive) now.moving.current = algebraic_current(vehicle, voltage(now.t), 0.0);
+    double y[max_unknowns];
+    unknowns(y);
+    const StandingTorques<double> torques = standing_torques(y);
+    const double torque = vehicle.motor.torque_constant * now.moving.current;
+    now.direction = sign_of(torque - 0.5 * (torques.low + torques.high));
+    now.stuck = torques.low < torques.high && torque >= torques.low && torque <= torques.high;
+    if (now.stuck) return;
+  }
+  choose_force_branch();
+}
+
+std::array<int, TimeModel::indicator_count> TimeModel::directions() const {
+  return {int(-now.force), now.stuck ? -1 : int(-now.direction), -1, 0, 0, -1, 0};
+}
+
+void TimeModel::handle(std::size_t indicator) {
+  if (indicator == jam) now.jammed = true;
+  if (indicator == standstill) {
+    if (now.stuck) {
+      double y[max_unknowns];
+      unknowns(y);
+      const StandingTorques<double> torques = standing_torques(y);
+      now.direction =
+          sign_of(vehicle.motor.torque_constant * current_of(now.t, y) - 0.5 * (torques.low + torques.high));
+      now.leaving = true;
+    }
+    now.stuck = false;
+    now.moving.speed = 0.0;
+  }
+  if (indicator == force) {
+    now.force = -now.force;
+    now.force_known = now.moving.speed != 0.0;
+  }
+  if (indicator == stop) {
+    if (now.held) now.held = false;
+    else meet_stop();
+  }
+}
+
+std::optional<TransientEvent::Kind> TimeModel::event_at(std::size_t indicator) const {
+  using Kind = TransientEvent::Kind;
+  if (indicator == standstill) return now.stuck ? Kind::breakaway : Kind::standstill;
+  if (indicator == force && !direct) return Kind::force_sign_change;
+  return std::nullopt;
+}
+
+bool TimeModel::branch_lost() {
+  if (indices.pitching && !now.held && std::abs(now.moving.pitch_angle) > vehicle.pitch.hinge.stop * (1.0 + 1e-9)) {
+    meet_stop();
+    return true;
+  }
+  if (now.stuck || !jumps_) return false;
+  if (now.direction * now.moving.speed < -1e-9 * speed_scale) return true;
+  if (wingless || !force_matters) return false;
+  double y[max_unknowns];
+  unknowns(y);
+  if (now.force * indicators(now.t, y)[force] >= -1e-8) return false;
+  now.force = -now.force;
+  now.force_known = true;
+  return true;
+}
+
+void TimeModel::resume() {
+  const double side = sign_of(now.moving.pitch_angle);
+  if (indices.pitching && !now.held && side * now.moving.pitch_angle >= vehicle.pitch.hinge.stop &&
+      side * now.moving.pitch_velocity > 0.0) {
+    meet_stop();
+  }
+}
+
+void TimeModel::meet_stop() {
+  const double side = sign_of(now.moving.pitch_angle);
+  now.moving.pitch_angle = side * vehicle.pitch.hinge.stop;
+  now.held = true;
+  if (uniqueness_now() <= smallest_margin) {
+    now.jammed = true;
+    return;
+  }
+  MotionState<double> instant{configuration_at_angle(vehicle, now.moving.angle),
+                              now.moving.speed,
+                              now.moving.current,
+                              0.0,
+                              now.moving.pitch_angle,
+                              now.moving.pitch_velocity};
+  Mode<double> after = mode();
+  wingbeat::meet_stop(vehicle, &instant, &after, [&](const StopImpact<double>& impact) {
+    now.impact_loss += impact.stop_work;
+    const CycleIntegrals<double> at_once = wingbeat::impulses(impact);
+    for (std::size_t q = 0; q < at_once.size(); ++q) now.impulses[q] += at_once[q];
+  });
+  now.moving.speed = instant.omega;
+  now.moving.pitch_velocity = instant.pitch_velocity;
+  now.stuck = after.slip < 0.0;
+  now.direction = after.direction;
+  if (!indices.inductive) now.moving.current = algebraic_current(vehicle, voltage(now.t), now.moving.speed);
+  double y[max_unknowns];
+  unknowns(y);
+  const bool stands = now.stuck || (jumps_ && now.moving.speed == 0.0);
+  // The impact may have turned the rod force over; its sign may depend on that of the gear torque.
+  for (int sweep = 0; sweep < 2 && !stands && force_matters; ++sweep) {
+    now.force = sign_of(motion(now.t, y).force_switch);
+  }
+  const double presses =
+      stands ? wings_standing(vehicle, this->instant(now.t, y), mode()).pitching_moment : motion(now.t, y).stop_moment;
+  if (side * presses < 0.0) now.held = false;
+}
+
+/// Room to the stop or, of wings that it holds, how they press on it [1].
+double TimeModel::stop_room(const double* y, const PitchMotion<double>& motion) const {
+  const double stop_angle = vehicle.pitch.hinge.stop, psi = y[indices.pitch];
+  if (!has_stop(vehicle.pitch.hinge)) return 1.0;
+  if (!now.held) return (stop_angle - std::abs(psi)) / stop_angle;
+  return sign_of(psi) * motion.stop_moment / (vehicle.pitch.pitch_inertia * speed_scale * pitch_velocity_scale);
+}
+
+}  // namespace wingbeat::detail
