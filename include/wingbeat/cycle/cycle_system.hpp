@@ -187,7 +187,7 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     else return y[0];
   }
   /// Of beta'.
-  static S stroke_sign(const auto& signs) { return signs[turns ? stroke : velocity]; }
+  [[gnu::always_inline]] static S stroke_sign(const auto& signs) { return signs[turns ? stroke : velocity]; }
 
   bool jumps([[maybe_unused]] std::size_t k) const {
     if constexpr (on_hinges) {
@@ -274,7 +274,7 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     }
   }
 
-  static Mode<S> mode(const auto& signs) {
+  [[gnu::always_inline]] static Mode<S> mode(const auto& signs) {
     Mode<S> mode{.stroke = stroke_sign(signs),
                  .force = signs[force],
                  .direction = turns ? S(1.0) : signs[velocity],
@@ -320,23 +320,18 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
   template <class At>
   [[gnu::always_inline]] MotionState<S> instant(const At& at, const State& y,
                                                 [[maybe_unused]] const Signs& signs) const {
-    MotionState<S> instant;
     if constexpr (turns) {
       const S i = current(S(0.0), y);
-      instant = {at, y[shaft], i, terminal_voltage(vehicle, vehicle.voltage, i)};
+      return with_pitch({at, y[shaft], i, terminal_voltage(vehicle, vehicle.voltage, i)}, y, signs);
     } else {
       const S i = current(at, y);
       const S omega = value_of(signs[slip]) < 0.0 ? S(0.0) : y[shaft];
-      instant = {{direct_kinematics<S>(), vehicle.wing_count * vehicle.spring.stiffness * y[0]},
-                 omega,
-                 i,
-                 terminal_voltage(vehicle, voltage(at), i)};
+      return with_pitch({{direct_kinematics<S>(), vehicle.wing_count * vehicle.spring.stiffness * y[0]},
+                         omega,
+                         i,
+                         terminal_voltage(vehicle, voltage(at), i)},
+                        y, signs);
     }
-    if constexpr (on_hinges) {
-      instant.pitch_angle = y[pitch];
-      instant.pitch_velocity = select(signs[held] >= S(0.0), y[pitch + 1], S(0.0));
-    }
-    return instant;
   }
 
   [[gnu::always_inline]] MotionHere motion(const Configuration<S>& at, const State& y, const Signs& signs) const
@@ -367,6 +362,15 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
   }
 
  private:
+  [[gnu::always_inline]] static MotionState<S> with_pitch(MotionState<S> instant, [[maybe_unused]] const State& y,
+                                                          [[maybe_unused]] const Signs& signs) {
+    if constexpr (on_hinges) {
+      instant.pitch_angle = y[pitch];
+      instant.pitch_velocity = select(signs[held] >= S(0.0), y[pitch + 1], S(0.0));
+    }
+    return instant;
+  }
+
   [[gnu::always_inline]] MotionHere motion_of(const MotionState<S>& instant, const Mode<S>& mode) const {
     if constexpr (on_hinges) {
       return pitch_motion_at(vehicle, instant, mode);

@@ -120,7 +120,8 @@ template <bool every_law = true, template <Scalar> class V, Scalar S>
 /// What is known of an instant before the sign of the rod force.
 template <Scalar S>
 struct IntermediateTerms {
-  MotionState<S> instant;
+  Configuration<S> configuration;
+  S omega, current, voltage;  ///< of the instant
   MotorLoads<S> motor;
   S stroke_velocity;  ///< beta' [rad/s]
   AeroLoads<S> aero;  ///< of all wings
@@ -148,7 +149,10 @@ template <template <Scalar> class V, Scalar S>
                                                                const StrokeLoads<S>& loads, const Mode<S>& mode) {
   const CrankKinematics<S>& k = instant.configuration.kinematics;
   IntermediateTerms<S> terms;
-  terms.instant = instant;
+  terms.configuration = instant.configuration;
+  terms.omega = instant.omega;
+  terms.current = instant.current;
+  terms.voltage = instant.voltage;
   terms.motor = motor_loads(v.motor, instant.voltage, instant.current, instant.omega);
   terms.stroke_velocity = k.stroke_slope * instant.omega;
   terms.aero = loads.aero;
@@ -197,18 +201,18 @@ template <template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const IntermediateTerms<S>& terms,
                                                   const Mode<S>& mode) {
   Motion<S> m;
-  m.kinematics = terms.instant.configuration.kinematics;
+  m.kinematics = terms.configuration.kinematics;
   const CrankKinematics<S>& k = m.kinematics;
   const S J = terms.inertia;
   const S g = k.wing_jacobian;
-  const S omega2 = square(terms.instant.omega);
+  const S omega2 = square(terms.omega);
   // mu r_e |F| sign(omega) = s mu r_e F with s = sign(F) sign(omega), on this branch.
   const S lever = k.crank_jacobian + mode.force * mode.direction * v.friction.radius;
   const S inertia_g = J * g + terms.A_g * lever;
   const S divisor = inverse_of(inertia_g);
 
-  m.current = terms.instant.current;
-  m.voltage = terms.instant.voltage;
+  m.current = terms.current;
+  m.voltage = terms.voltage;
   m.stroke_velocity = terms.stroke_velocity;
   m.aero = terms.aero;
   m.force_switch = terms.force_switch;
@@ -223,9 +227,9 @@ template <template <Scalar> class V, Scalar S>
     m.gear_torque =
         mode.direction * (terms.motor.torque - terms.motor.drag_torque - v.motor.inertia * m.crank_acceleration) -
         v.motor.friction_torque;
-    m.gear_loss = (S(1.0) - terms.gear_ratio) * m.gear_torque * mode.direction * terms.instant.omega;
+    m.gear_loss = (S(1.0) - terms.gear_ratio) * m.gear_torque * mode.direction * terms.omega;
   }
-  m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + terms.instant.configuration.spring_moment;
+  m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + terms.configuration.spring_moment;
   m.inductive_voltage = terms.motor.inductive_voltage;
   return m;
 }
