@@ -44,7 +44,7 @@ bool suits_packs(const Vehicle<double>& v) {
   if (v.transmission.type == TransmissionType::slider_crank) return lanes_know_coefficients(v);
   // Where constant friction holds a shaft that swings, the equations jump; where coefficients have kinks, their slopes
   // jump.
-  return v.transmission.type == TransmissionType::direct && breakaway_torque(v) == 0.0 && !v.wings.coefficients.table &&
+  return v.transmission.type == TransmissionType::direct && !jumps_at_rest(v) && !v.wings.coefficients.table &&
          !has_pitch_stop(v.wings);
 }
 

@@ -358,15 +358,7 @@ void CrankStartUp::take_metrics(int cycles) {
   }
   integrals[std::size_t(Integral::time)] = (now_.t - start) / cycles;
   integrals[std::size_t(Integral::reactive_work)] = variation_ / cycles;
-  const Motor<double>& m = model_.vehicle.motor;
-  if (has_gear_loss(m)) {
-    // What the motor gives less what comes out is what the gearbox loses.
-    const auto total = [&](Integral which) { return integrals[std::size_t(which)]; };
-    integrals[std::size_t(Integral::gear_work)] =
-        total(Integral::electrical_work) - m.armature_resistance * total(Integral::current_square) -
-        m.viscous_damping * total(Integral::speed_square) - m.friction_torque * total(Integral::travel) -
-        total(Integral::motor_work) - (model_.motor_energy() - motor_mark_) / cycles;
-  }
+  set_gear_work(model_.vehicle.motor, (model_.motor_energy() - motor_mark_) / cycles, integrals);
   if (model_.indices.pitching) {
     // Of a crank that stands for a while, what rounding leaves of the speed is none.
     double& slowest = extremes_[std::size_t(Extreme::crank_speed_min)];

@@ -74,7 +74,7 @@ class DirectStartUp {
   std::optional<Metrics<double>> last_metrics_;  ///< of the period before, found with the relative tolerance
   double measured_with_ = 0.0;
   int periods_at_tightest_ = 0;
-  double variation_ = 0.0, energy_mark_ = 0.0;
+  double variation_ = 0.0, energy_mark_ = 0.0, motor_mark_ = 0.0;
   CycleExtremes<double> extremes_{};
   double swing_ = 0.0;  ///< largest |beta| of this period at the ends of steps
   std::vector<double> swings_;
@@ -254,6 +254,7 @@ void DirectStartUp::begin_measuring() {
   extremes_.fill(-infinity);
   variation_ = 0.0;
   energy_mark_ = model_.wing_energy();
+  motor_mark_ = model_.motor_energy();
   result_.cycle.clear();
   impulses_mark_ = now_.impulses;
   pitching_.begin(model_);
@@ -268,6 +269,7 @@ void DirectStartUp::take_metrics() {
   }
   integrals[std::size_t(Integral::time)] = period_;
   integrals[std::size_t(Integral::reactive_work)] = variation_;
+  set_gear_work(model_.vehicle.motor, model_.motor_energy() - motor_mark_, integrals);
   result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
   result_.averaged_cycles = 1;
   if (model_.indices.pitching) pitching_.finish(model_, now_.t - period_, now_.t, 1, *result_.metrics);

@@ -25,6 +25,17 @@ constexpr std::size_t quadrature_of(Integral which) {
   return place;
 }
 
+/// What the motor gives less what comes out of the gearbox is what that loses: sets it where the gearbox loses torque,
+/// `stored` being what rotor and inductance have gained meanwhile [J].
+inline void set_gear_work(const Motor<double>& m, double stored, CycleIntegrals<double>& integrals) {
+  if (!has_gear_loss(m)) return;
+  const auto total = [&](Integral which) { return integrals[std::size_t(which)]; };
+  integrals[std::size_t(Integral::gear_work)] =
+      total(Integral::electrical_work) - m.armature_resistance * total(Integral::current_square) -
+      m.viscous_damping * total(Integral::speed_square) - m.friction_torque * total(Integral::travel) -
+      total(Integral::motor_work) - stored;
+}
+
 /// Largest deviation of a metric of `m` from that of `other` beside its error_scale(). A metric that is absent counts
 /// as equal.
 inline double metrics_apart(const Metrics<double>& m, const Metrics<double>& other) {

@@ -4,6 +4,7 @@
 
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/parts/any_transmission.hpp"
+#include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/parts/wing_limits.hpp"
@@ -30,15 +31,19 @@ void validate_direct(const Design<double>& d) {
   if (!is_sine(d.supply.type)) {
     throw ParameterError("supply.type", "a direct drive swings as its supply does: expected sine or battery-sine");
   }
-  if (d.motor.gear_efficiency && *d.motor.gear_efficiency < 1.0) {
-    throw ParameterError("motor.gear_efficiency",
-                         "a direct drive's load changes the direction of power twice a stroke, where such a gearbox "
-                         "would stick: expected 1");
-  }
   if (d.friction.law == FrictionLaw::load_proportional) {
-    throw ParameterError("friction.type",
-                         "load-proportional friction follows the rod force, and a direct drive has no "
-                         "rod; expected none, viscous, quadratic or constant");
+    const std::optional<double>& r_ref = d.friction.reference_radius;
+    if (!r_ref) {
+      throw ParameterError(direct_drive_key::reference_radius.path,
+                           "missing: load-proportional friction of a direct drive acts on the wings' moment over this "
+                           "radius, at which the shaft takes it up");
+    }
+    if (!(d.friction.coefficient < *r_ref)) {
+      throw ParameterError(friction_key::radius.path,
+                           detail::format("must be < friction.reference_radius, %.4g m: such friction would exceed any "
+                                          "moment, got %.4g m",
+                                          *r_ref, d.friction.coefficient));
+    }
   }
   if (d.supply_resonance_ratio && d.spring.resonance_ratio) {
     throw ParameterError("supply.resonance_ratio",
@@ -104,12 +109,6 @@ void validate_pitching(const Design<double>& d, const Vehicle<double>& v) {
                              " is for wings that pitch on a hinge; give pitch.stiffness, or translational-2022");
   }
   const char* key = pitch_key::stiffness.path;
-  const bool constant = d.friction.law == FrictionLaw::constant || d.motor.constants.friction_torque > 0.0;
-  if (constant && !drive_of(d).rotates) {
-    throw ParameterError(
-        d.friction.law == FrictionLaw::constant ? "friction.type" : "motor.friction_torque",
-        "constant friction of a direct drive is not solved for together with wings that pitch on a hinge");
-  }
   if (d.wing.planform.shape == PlanformShape::moments) {
     throw ParameterError(key, "needs the wing's outline: give a planform with a shape");
   }

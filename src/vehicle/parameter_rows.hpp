@@ -256,10 +256,13 @@ std::span<const Parameter<S>> parameter_table() {
           "how the rod force turns the wings: the paper's eq (1), or conserving power exactly",
           name_of(Formulation::virtual_work)),
 
-      choice<S, FrictionChoice>(
-          "law of the transmission's friction torque T_f on the crank or shaft; load-proportional needs a rod"),
+      choice<S, FrictionChoice>("law of the transmission's friction torque T_f on the crank or shaft"),
       friction_number<S, FrictionLaw::load_proportional>(row(
           friction_key::radius, "required", "mu r_e, effective friction radius: T_f = mu r_e abs(F)", {}, "2.5 mm")),
+      number<S, Direct>(row(direct_drive_key::reference_radius, "none",
+                            "r_ref, radius at which the wings' moment is taken up: load-proportional friction acts on "
+                            "that moment over r_ref"),
+                        [](auto& d) -> auto& { return d.friction.reference_radius; }),
       friction_number<S, FrictionLaw::viscous>(row(friction_key::damping, "required", "b_f: T_f = b_f omega")),
       friction_number<S, FrictionLaw::quadratic>(
           row(friction_key::quadratic, "required", "c_f: T_f = c_f omega abs(omega)")),

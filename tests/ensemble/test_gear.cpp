@@ -236,15 +236,6 @@ TEST(GearEfficiency, BadInputIsNamed) {
             "motor.gear_efficiency: must be > 0 and <= 1 [1], got 0");
   EXPECT_EQ(refused([](auto& d) { d.motor.gear_efficiency = 1.01; }),
             "motor.gear_efficiency: must be > 0 and <= 1 [1], got 1.01");
-  EXPECT_EQ(refused([](auto& d) {
-              d.motor.gear_efficiency = 0.8;
-              d.transmission = {};
-              d.transmission.type = TransmissionType::direct;
-              d.supply = {SupplyType::sine, 3.0, 22.0, 1.0};
-              d.friction = {};
-            }),
-            "motor.gear_efficiency: a direct drive's load changes the direction of power twice a stroke, where such a "
-            "gearbox would stick: expected 1");
 }
 
 }  // namespace

@@ -89,8 +89,8 @@ TEST(DirectFile, RefusesWithPlaceAndKey) {
   EXPECT_EQ(
       refusal(
           direct_with("type = \"constant\"\ntorque = \"1e-4 N m\"", "type = \"load-proportional\"\nradius = 0.002")),
-      "v.toml:14:1: friction.type: load-proportional friction follows the rod force, and a direct drive has no rod; "
-      "expected none, viscous, quadratic or constant");
+      "v.toml:13:1: friction.reference_radius: missing: load-proportional friction of a direct drive acts on the wings' "
+      "moment over this radius, at which the shaft takes it up");
   EXPECT_EQ(refusal(direct_with("type = \"sine\"\namplitude = \"3 V\"\nfrequency = \"22 Hz\"",
                                 "type = \"constant\"\nvoltage = 3\n")),
             "v.toml:2:1: supply.type: a direct drive swings as its supply does: expected sine or battery-sine");

@@ -27,7 +27,7 @@ std::string page_with(const std::string& name, std::string wanted) {
     text.replace(from, to - from, wanted);
     std::ofstream(file, std::ios::binary) << text;
   } else {
-    EXPECT_EQ(text.substr(from, to - from), wanted) << "run test_io with WINGBEAT_UPDATE_DOCS=1";
+    EXPECT_EQ(text.substr(from, to - from), wanted) << "run test_report with WINGBEAT_UPDATE_DOCS=1";
   }
   return text;
 }

@@ -305,9 +305,13 @@ TEST(DirectDrive, ValidateNamesWhatItCannotHave) {
   };
   using D = Design<double>;
   EXPECT_EQ(refused([](D&) {}), "accepted");
-  EXPECT_EQ(refused([](D& d) { d.friction = {FrictionLaw::load_proportional, 1e-3}; }),
-            "friction.type: load-proportional friction follows the rod force, and a direct drive has no rod; expected "
-            "none, viscous, quadratic or constant");
+  EXPECT_EQ(
+      refused([](D& d) { d.friction = {FrictionLaw::load_proportional, 1e-3}; }),
+      "friction.reference_radius: missing: load-proportional friction of a direct drive acts on the wings' moment "
+      "over this radius, at which the shaft takes it up");
+  EXPECT_EQ(refused([](D& d) { d.friction = {FrictionLaw::load_proportional, 5e-3, 5e-3}; }),
+            "friction.radius: must be < friction.reference_radius, 0.005 m: such friction would exceed any moment, got "
+            "0.005 m");
   EXPECT_EQ(refused([](D& d) { d.supply.type = SupplyType::constant; }),
             "supply.type: a direct drive swings as its supply does: expected sine or battery-sine");
   EXPECT_EQ(refused([](D& d) { d.supply_resonance_ratio = 0.0; }), "supply.resonance_ratio: must be > 0 [1], got 0");

@@ -1,4 +1,4 @@
-// Six wide boxes of random vehicles on top of wide_boxes.hpp: parts whose losses, events and statuses earlier boxes
+// Seven wide boxes of random vehicles on top of wide_boxes.hpp: parts whose losses, events and statuses earlier boxes
 // exercise little.
 #pragma once
 
@@ -13,10 +13,11 @@ enum class FurtherBox {
   heat,             ///< warm motors on every supply and transmission
   pwm,              ///< switched supplies
   tiny_inductance,  ///< electrical lags far below an angle that matters
-  long_cranks       ///< hinges beside a long crank, where levers grow and fall within a few degrees
+  long_cranks,      ///< hinges beside a long crank, where levers grow and fall within a few degrees
+  direct_losses     ///< direct drives: constant friction, friction by the load, lossy gearboxes, wings on hinges or not
 };
-inline constexpr std::array<std::string_view, 6> further_box_names = {"stops",           "gear",       "heat", "pwm",
-                                                                      "tiny_inductance", "long_cranks"};
+inline constexpr std::array<std::string_view, 7> further_box_names = {
+    "stops", "gear", "heat", "pwm", "tiny_inductance", "long_cranks", "direct_losses"};
 
 /// A vehicle as drawn, which need not be a valid one.
 inline WideVehicle drawn_further_vehicle(FurtherBox box, std::uint32_t n, std::uint32_t seed = 12) {
@@ -81,6 +82,22 @@ inline WideVehicle drawn_further_vehicle(FurtherBox box, std::uint32_t n, std::u
       auto& t = drawn.design.transmission;
       t.hinge_offset = t.crank_radius * logarithmic(0.02, 0.4);
       if (chance(0.5)) drawn.design.supply.voltage *= logarithmic(0.05, 1.0);
+      break;
+    }
+    case FurtherBox::direct_losses: {
+      drawn = wide_vehicle(FarBox::direct, n, seed + 1);
+      Design<double>& d = drawn.design;
+      const double kind = uniform(0.0, 1.0);
+      if (kind < 0.4) {
+        const double torque =
+            d.motor.constants.torque_constant * d.supply.voltage / d.motor.constants.armature_resistance;
+        d.friction = {FrictionLaw::constant, torque * logarithmic(1e-3, 0.3)};
+      } else if (kind < 0.8) {
+        d.friction = {FrictionLaw::load_proportional, logarithmic(1e-5, 2e-3), 5e-3};
+      }
+      if (kind > 0.6) add(drawn, ModelOption::gear);
+      if (kind < 0.4 || chance(0.5)) put_on_hinges(d);
+      if (d.pitch.stiffness && chance(0.3)) d.pitch.stop = uniform(0.05, 1.2);
       break;
     }
   }

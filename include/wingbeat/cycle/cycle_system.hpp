@@ -292,7 +292,7 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
 
   CrankKinematics<S> kinematics([[maybe_unused]] const S& x) const {
     if constexpr (turns) return configuration(x).kinematics;
-    else return direct_kinematics<S>();
+    else return direct_kinematics(vehicle.transmission.direct);
   }
   Configuration<S> configuration(const S& theta) const
     requires turns_
@@ -321,16 +321,16 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
   [[gnu::always_inline]] MotionState<S> instant(const At& at, const State& y,
                                                 [[maybe_unused]] const Signs& signs) const {
     if constexpr (turns) {
-      const S i = current(S(0.0), y);
-      return with_pitch({at, y[shaft], i, terminal_voltage(vehicle, vehicle.voltage, i)}, y, signs);
+      const S i = current(S(0.0), y), v_t = terminal_voltage(vehicle, vehicle.voltage, i);
+      if constexpr (on_hinges) return {at, y[shaft], i, v_t, y[pitch], pitch_velocity(y, signs)};
+      else return {at, y[shaft], i, v_t};
     } else {
-      const S i = current(at, y);
+      const Configuration<S> here{direct_kinematics(vehicle.transmission.direct),
+                                  vehicle.wing_count * vehicle.spring.stiffness * y[0]};
       const S omega = value_of(signs[slip]) < 0.0 ? S(0.0) : y[shaft];
-      return with_pitch({{direct_kinematics<S>(), vehicle.wing_count * vehicle.spring.stiffness * y[0]},
-                         omega,
-                         i,
-                         terminal_voltage(vehicle, voltage(at), i)},
-                        y, signs);
+      const S i = current(at, y), v_t = terminal_voltage(vehicle, voltage(at), i);
+      if constexpr (on_hinges) return {here, omega, i, v_t, y[pitch], pitch_velocity(y, signs)};
+      else return {here, omega, i, v_t};
     }
   }
 
@@ -362,13 +362,8 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
   }
 
  private:
-  [[gnu::always_inline]] static MotionState<S> with_pitch(MotionState<S> instant, [[maybe_unused]] const State& y,
-                                                          [[maybe_unused]] const Signs& signs) {
-    if constexpr (on_hinges) {
-      instant.pitch_angle = y[pitch];
-      instant.pitch_velocity = select(signs[held] >= S(0.0), y[pitch + 1], S(0.0));
-    }
-    return instant;
+  static S pitch_velocity(const State& y, const Signs& signs) {
+    return select(signs[held] >= S(0.0), y[pitch + 1], S(0.0));
   }
 
   [[gnu::always_inline]] MotionHere motion_of(const MotionState<S>& instant, const Mode<S>& mode) const {

@@ -4,6 +4,7 @@
 
 #include "wingbeat/core/members.hpp"
 #include "wingbeat/core/scalar.hpp"
+#include "wingbeat/parts/direct_drive.hpp"
 #include "wingbeat/parts/four_bar.hpp"
 #include "wingbeat/parts/slider_crank.hpp"
 #include "wingbeat/parts/stroke_table.hpp"
@@ -12,18 +13,18 @@
 
 namespace wingbeat {
 
-/// One of the transmissions, by its type; the members of the others are unused. Of a direct drive there is none: its
-/// kinematics are direct_kinematics().
+/// One of the transmissions, by its type; the members of the others are unused.
 template <Scalar S>
 struct AnyTransmission {
   TransmissionType type = TransmissionType::slider_crank;
   SliderCrank<S> slider_crank = {};
   FourBar<S> four_bar = {};
   StrokeTable<S> tabulated = {};
+  DirectDrive<S> direct = {};
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
-    return use(self.type, self.slider_crank, self.four_bar, self.tabulated);
+    return use(self.type, self.slider_crank, self.four_bar, self.tabulated, self.direct);
   }
 };
 

@@ -99,10 +99,11 @@ template <Scalar S>
 struct FrictionDesign {
   FrictionLaw law = FrictionLaw::none;
   S coefficient = S(0);  ///< radius [m], damping [N m s/rad], coefficient [N m s2/rad2] or torque [N m] by law
+  std::optional<S> reference_radius = {};  ///< of a direct drive whose friction follows the load, see DirectDrive [m]
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
-    return use(self.law, self.coefficient);
+    return use(self.law, self.coefficient, self.reference_radius);
   }
 };
 

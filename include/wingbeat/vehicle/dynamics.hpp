@@ -53,7 +53,7 @@ Configuration<S> configuration_at_angle(const Vehicle<S>& v, const S& angle) {
   using std::cos;
   using std::sin;
   if (drive_of(v).rotates) return configuration_at(v, S(sin(angle)), S(cos(angle)));
-  return {direct_kinematics<S>(), v.wing_count * v.spring.stiffness * angle};
+  return {direct_kinematics(v.transmission.direct), v.wing_count * v.spring.stiffness * angle};
 }
 
 /// The instant at these coordinates where the supply drives `supply_voltage` [V], in a mode of which `held` and `slip`

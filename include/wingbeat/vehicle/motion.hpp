@@ -234,16 +234,6 @@ template <template <Scalar> class V, Scalar S>
   return m;
 }
 
-/// The levers of a direct drive, whose shaft angle is the stroke angle itself. The "rod force" is then the torque
-/// passed on to the wings [N m]. It holds no position: that is the stroke angle of the state (model.md section 6).
-/// \f[
-/// B_1 = g = h = 1, \qquad B_2 = 0
-/// \f]
-template <Scalar S>
-CrankKinematics<S> direct_kinematics() {
-  return {S(0.0), S(0.0), S(1.0), S(0.0), S(1.0), S(1.0)};
-}
-
 /// What acts at an instant on wings under the pitch law, in a given mode.
 template <template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const MotionState<S>& instant, const Mode<S>& mode) {

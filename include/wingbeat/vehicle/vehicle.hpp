@@ -153,6 +153,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
 
   const bool direct = design.transmission.type == TransmissionType::direct;
   v.transmission = transmission_of(design.transmission);
+  if (design.friction.reference_radius) v.transmission.direct.reference_radius = *design.friction.reference_radius;
 
   const S& coefficient = design.friction.coefficient;
   switch (design.friction.law) {

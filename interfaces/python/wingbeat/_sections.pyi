@@ -347,7 +347,7 @@ class TransmissionSection(Section):
 class FrictionSection(Section):
     @property
     def type(self) -> str | None:
-        """law of the transmission's friction torque T_f on the crank or shaft; load-proportional needs a rod.
+        """law of the transmission's friction torque T_f on the crank or shaft.
         Range: none, load-proportional, viscous, quadratic or constant. Default: required.
         """
     @property
@@ -355,6 +355,12 @@ class FrictionSection(Section):
         """mu r_e, effective friction radius: T_f = mu r_e abs(F).
         [m] Range: >= 0. Default: required.
         Only with friction.type = load-proportional.
+        """
+    @property
+    def reference_radius(self) -> Quantity | None:
+        """r_ref, radius at which the wings' moment is taken up: load-proportional friction acts on that moment over r_ref.
+        [m] Range: > 0. Default: none.
+        Only with transmission.type = direct.
         """
     @property
     def damping(self) -> Quantity | None:
