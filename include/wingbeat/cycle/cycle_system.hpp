@@ -318,26 +318,26 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
 
   /// The instant of a crank in a configuration, or of a direct drive at a phase.
   template <class At>
-  [[gnu::always_inline]] MotionState<S> instant(const At& at, const State& y,
+  [[gnu::always_inline]] MotionState<S> instant(const At& place, const State& y,
                                                 [[maybe_unused]] const Signs& signs) const {
     if constexpr (turns) {
       const S i = current(S(0.0), y), v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-      if constexpr (on_hinges) return {at, y[shaft], i, v_t, y[pitch], pitch_velocity(y, signs)};
-      else return {at, y[shaft], i, v_t};
+      if constexpr (on_hinges) return {place, y[shaft], i, v_t, y[pitch], pitch_velocity(y, signs)};
+      else return {place, y[shaft], i, v_t};
     } else {
       const Configuration<S> here{direct_kinematics(vehicle.transmission.direct),
                                   vehicle.wing_count * vehicle.spring.stiffness * y[0]};
       const S omega = value_of(signs[slip]) < 0.0 ? S(0.0) : y[shaft];
-      const S i = current(at, y), v_t = terminal_voltage(vehicle, voltage(at), i);
+      const S i = current(place, y), v_t = terminal_voltage(vehicle, voltage(place), i);
       if constexpr (on_hinges) return {here, omega, i, v_t, y[pitch], pitch_velocity(y, signs)};
       else return {here, omega, i, v_t};
     }
   }
 
-  [[gnu::always_inline]] MotionHere motion(const Configuration<S>& at, const State& y, const Signs& signs) const
+  [[gnu::always_inline]] MotionHere motion(const Configuration<S>& place, const State& y, const Signs& signs) const
     requires turns_
   {
-    return motion_of(instant(at, y, signs), mode(signs));
+    return motion_of(instant(place, y, signs), mode(signs));
   }
   [[gnu::always_inline]] MotionHere motion(const S& x, const State& y, const Signs& signs) const {
     if constexpr (turns) return motion(configuration(x), y, signs);
@@ -355,10 +355,10 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     else return rates_at<quadratures>(x, y, signs);
   }
   template <bool quadratures>
-  solver::Rates<CycleSystem> rates(const Configuration<S>& at, const State& y, const Signs& signs) const
+  solver::Rates<CycleSystem> rates(const Configuration<S>& place, const State& y, const Signs& signs) const
     requires turns_
   {
-    return rates_at<quadratures>(at, y, signs);
+    return rates_at<quadratures>(place, y, signs);
   }
 
  private:
@@ -379,8 +379,9 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
   }
 
   template <bool quadratures, class At>
-  [[gnu::always_inline]] solver::Rates<CycleSystem> rates_at(const At& at, const State& y, const Signs& signs) const {
-    const MotionHere m = motion(at, y, signs);
+  [[gnu::always_inline]] solver::Rates<CycleSystem> rates_at(const At& place, const State& y,
+                                                             const Signs& signs) const {
+    const MotionHere m = motion(place, y, signs);
     const S per_rate = S(1.0) / phase_rate(y);
     solver::Rates<CycleSystem> r;
     if constexpr (!turns) r.dy[0] = m.stroke_velocity * per_rate;
@@ -391,7 +392,7 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     if constexpr (!turns) {
       const bool stuck = value_of(signs[slip]) < 0.0;
       r.switches[velocity] = stuck ? signs[velocity] : y[shaft];
-      r.switches[release] = stuck ? holding_margin(at, y, signs) : S(1.0);
+      r.switches[release] = stuck ? holding_margin(place, y, signs) : S(1.0);
       if (!force_has_branches(vehicle)) r.switches[force] = S(1.0);
       if (stuck) r.switches[force] = signs[force], r.switches[gear] = signs[gear];
     }
