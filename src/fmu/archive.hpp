@@ -75,7 +75,7 @@ class ArchiveReader {
   template <class T>
   void operator()(T& x) {
     if constexpr (PlainValue<T>) {
-      std::memcpy(&x, take(sizeof x).data(), sizeof x);
+      take(sizeof x).copy(reinterpret_cast<char*>(&x), sizeof x);
     } else {
       T::members(x, [this](auto&... member) {
         ((*this)(member), ...);
