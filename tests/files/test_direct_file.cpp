@@ -89,7 +89,7 @@ TEST(DirectFile, RefusesWithPlaceAndKey) {
   EXPECT_EQ(
       refusal(
           direct_with("type = \"constant\"\ntorque = \"1e-4 N m\"", "type = \"load-proportional\"\nradius = 0.002")),
-      "v.toml:13:1: friction.reference_radius: missing: load-proportional friction of a direct drive acts on the wings' "
+      "v.toml:13:2: friction.reference_radius: missing: load-proportional friction of a direct drive acts on the wings' "
       "moment over this radius, at which the shaft takes it up");
   EXPECT_EQ(refusal(direct_with("type = \"sine\"\namplitude = \"3 V\"\nfrequency = \"22 Hz\"",
                                 "type = \"constant\"\nvoltage = 3\n")),
