@@ -1,4 +1,4 @@
-// A vehicle on its supply, in time: its state, its events, and what happens at them; model.md sections 2, 6, 12, 13.
+// A vehicle on its supply, in time: its state, its events, and what happens at them; model.md sections 2, 6, 9, 12.
 #pragma once
 
 #include <array>

@@ -1,5 +1,5 @@
 // What happens to a vehicle in time between smooth pieces: rod force and shaft change direction, friction holds and
-// lets go, wings meet a stop; model.md sections 2, 12, 13.
+// lets go, wings meet a stop; model.md sections 2, 9, 12.
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,7 +1,7 @@
 #include "wingbeat/time/transient.hpp"
 
 #include "time/crank_start_up.hpp"
-#include "time/direct_transient.hpp"
+#include "time/direct_start_up.hpp"
 #include "wingbeat/cycle/static_balance.hpp"
 
 namespace wingbeat {
@@ -30,7 +30,7 @@ TransientResult simulate_start_up(const Vehicle<double>& vehicle, const Transien
         .kind = StatusEvidence::Kind::weak_motor, .torque = 0.0, .friction_torque = breakaway_torque(vehicle)};
     return result;
   }
-  if (!drive_of(vehicle).rotates) return detail::simulate_direct_start_up(vehicle, options);
+  if (!drive_of(vehicle).rotates) return detail::DirectStartUp(vehicle, options).run();
   return detail::CrankStartUp(vehicle, options).run();
 }
 

@@ -45,6 +45,11 @@ void validate_direct(const Design<double>& d) {
                                           *r_ref, d.friction.coefficient));
     }
   }
+  if (d.friction.reference_radius && d.friction.law != FrictionLaw::load_proportional) {
+    throw ParameterError(
+        direct_drive_key::reference_radius.path,
+        std::string("is where load-proportional friction acts: friction.type is ") + name_of(d.friction.law));
+  }
   if (d.supply_resonance_ratio && d.spring.resonance_ratio) {
     throw ParameterError("supply.resonance_ratio",
                          "ties the frequency to the springs, which spring.resonance_ratio "

@@ -86,11 +86,10 @@ TEST(DirectFile, RefusesWithPlaceAndKey) {
   EXPECT_EQ(refusal("[vehicle]\nmass = \"3 g\"\n" +
                     direct_with("type = \"direct\"", "type = \"direct\"\nrod_linear_density = \"1 g/m\"")),
             "v.toml:15:1: transmission.rod_linear_density: a direct drive has no rod");
-  EXPECT_EQ(
-      refusal(
-          direct_with("type = \"constant\"\ntorque = \"1e-4 N m\"", "type = \"load-proportional\"\nradius = 0.002")),
-      "v.toml:13:2: friction.reference_radius: missing: load-proportional friction of a direct drive acts on the wings' "
-      "moment over this radius, at which the shaft takes it up");
+  EXPECT_EQ(refusal(direct_with("type = \"constant\"\ntorque = \"1e-4 N m\"",
+                                "type = \"load-proportional\"\nradius = 0.002")),
+            "v.toml:13:2: friction.reference_radius: missing: load-proportional friction of a direct drive acts on the "
+            "wings' moment over this radius, at which the shaft takes it up");
   EXPECT_EQ(refusal(direct_with("type = \"sine\"\namplitude = \"3 V\"\nfrequency = \"22 Hz\"",
                                 "type = \"constant\"\nvoltage = 3\n")),
             "v.toml:2:1: supply.type: a direct drive swings as its supply does: expected sine or battery-sine");

@@ -312,6 +312,8 @@ TEST(DirectDrive, ValidateNamesWhatItCannotHave) {
   EXPECT_EQ(refused([](D& d) { d.friction = {FrictionLaw::load_proportional, 5e-3, 5e-3}; }),
             "friction.radius: must be < friction.reference_radius, 0.005 m: such friction would exceed any moment, got "
             "0.005 m");
+  EXPECT_EQ(refused([](D& d) { d.friction = {FrictionLaw::viscous, 1e-6, 5e-3}; }),
+            "friction.reference_radius: is where load-proportional friction acts: friction.type is viscous");
   EXPECT_EQ(refused([](D& d) { d.supply.type = SupplyType::constant; }),
             "supply.type: a direct drive swings as its supply does: expected sine or battery-sine");
   EXPECT_EQ(refused([](D& d) { d.supply_resonance_ratio = 0.0; }), "supply.resonance_ratio: must be > 0 [1], got 0");

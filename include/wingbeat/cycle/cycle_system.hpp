@@ -1,6 +1,6 @@
 // The dynamic model of a vehicle as a periodic system: what solve/ integrates. A crank's cycle is a turn, its variable
 // the crank angle; a direct drive's is a period of its supply, its variable the phase of that. model.md sections 2, 6,
-// 12, 13.
+// 9, 12.
 #pragma once
 
 #include <array>

@@ -1,4 +1,4 @@
-// A direct drive as a transmission: the motor's shaft is the wings' hinge; model.md sections 6, 13.
+// A direct drive as a transmission: the motor's shaft is the wings' hinge; model.md section 6.
 #pragma once
 
 #include "wingbeat/core/range.hpp"

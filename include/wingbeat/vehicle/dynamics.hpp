@@ -1,6 +1,6 @@
 // The dynamic model of a vehicle: what acts in a state, whatever of the vehicle moves, and which mode holds there. All
-// that integrates a vehicle, in time, crank angle or phase of the supply, evaluates these. model.md sections 2, 6, 9,
-// 12, 13, 18.
+// that integrates a vehicle, in time, crank angle or phase of the supply, evaluates these. model.md sections 2, 6, 9
+// and 12.
 #pragma once
 
 #include <cmath>

@@ -1,92 +1,20 @@
-#include "time/direct_transient.hpp"
+#include "time/direct_start_up.hpp"
 
-#include <array>
+#include <algorithm>
 #include <cmath>
-#include <functional>
-#include <memory>
-#include <optional>
-#include <span>
 #include <utility>
 
-#include "time/integrator.hpp"
 #include "time/model_problem.hpp"
-#include "time/pitch_samples.hpp"
-#include "time/recorder.hpp"
-#include "time/time_model.hpp"
-#include "time/transient_tools.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
-#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
 namespace {
 
-using Event = TransientEvent::Kind;
-using Evidence = StatusEvidence::Kind;
-
 constexpr int sticking_pieces = 512;     // of a period: how often a stuck shaft is looked at
-constexpr int creep_periods = 8;         // of ever shorter slips in one direction, that end at rest
 constexpr double nearly_settled = 1e-4;  // off the orbit, where the steps allowed end before the tolerance is reached
 constexpr int contraction_periods = 4;   // over which the contraction is taken: complex multipliers make it uneven
 
-class DirectStartUp {
- public:
-  DirectStartUp(const Vehicle<double>& vehicle, const TransientOptions& options);
-  DirectStartUp(const DirectStartUp&) = delete;
-  TransientResult run();
-
- private:
-  std::span<const TimeModel::Indicator> watched(bool measuring) const;
-  std::unique_ptr<Integrator> integrator(bool measuring);
-
-  void advance(double until);
-  void step_taken(Integrator& steps, double from);
-  WaveformRow row(double t, const double* y) const;
-  void add_variation();
-  void period_done();
-  void settle(double closure, double change);
-  void changing(const std::function<void()>& change);
-  double largest_torque() const;
-  bool wings_are_still() const;
-  bool rests_for_good();
-  bool creeps_to_rest();
-  void begin_measuring();
-  void take_metrics();
-  bool out_of_budget();
-  void give_up(StatusEvidence why);
-  void event(Event kind) { result_.events.push_back({now_.t, now_.moving.angle, kind}); }
-
-  const TransientOptions& options_;
-  TransientResult result_;
-  Recorder recorder_{options_, result_};
-  TimeModel model_;
-  TimeModel::State& now_ = model_.now;
-  const double period_ = 1.0 / model_.vehicle.drive_frequency;
-  bool stiff_ = false, done_ = false;
-  double relative_tolerance_ = 1e-9, tightest_ = 1e-13;
-  double quadrature_scale_[quadrature_count] = {};
-
-  double q_[quadrature_count] = {};
-  std::unique_ptr<Integrator> plain_, with_quadratures_;
-
-  bool measuring_ = false;
-  double last_off_ = infinity;                   ///< how far the last period was from the orbit, relative
-  double last_apart_ = infinity;                 ///< that, or how far the last metrics were from those before them
-  std::optional<Metrics<double>> last_metrics_;  ///< of the period before, found with the relative tolerance
-  double measured_with_ = 0.0;
-  int periods_at_tightest_ = 0;
-  double variation_ = 0.0, energy_mark_ = 0.0, motor_mark_ = 0.0;
-  CycleExtremes<double> extremes_{};
-  double swing_ = 0.0;  ///< largest |beta| of this period at the ends of steps
-  std::vector<double> swings_;
-  double stroke_before_ = 0.0;
-  double travel_[2] = {}, last_travel_ = infinity;  ///< of this period: backwards, forwards; the longer of the last
-  int creeping_ = 0;                                ///< periods so far
-  std::array<double, max_unknowns> before_{};
-  CycleIntegrals<double> impulses_mark_{};
-  PitchSamples pitching_;
-  double stuck_until_ = infinity;  ///< what a shaft has not left by then, it never leaves
-  std::vector<double> changes_;
-};
+}  // namespace
 
 DirectStartUp::DirectStartUp(const Vehicle<double>& vehicle, const TransientOptions& options)
     : options_(options), model_(vehicle, {}) {
@@ -275,84 +203,6 @@ void DirectStartUp::take_metrics() {
   if (model_.indices.pitching) pitching_.finish(model_, now_.t - period_, now_.t, 1, *result_.metrics);
 }
 
-/// The largest torque of the motor at rest from now on [N m]: its current is a sine and what remains of its start.
-double DirectStartUp::largest_torque() const {
-  const Motor<double>& m = model_.vehicle.motor;
-  const double w = two_pi * model_.vehicle.drive_frequency;
-  const double Z = std::hypot(m.armature_resistance, w * m.armature_inductance);
-  const double lag = std::atan2(w * m.armature_inductance, m.armature_resistance);
-  const double remains = model_.indices.inductive
-                             ? std::abs(now_.moving.current - model_.vehicle.voltage / Z * std::sin(w * now_.t - lag))
-                             : 0.0;
-  return model_.drive_torque + m.torque_constant * remains;
-}
-
-/// True, with the decision, where nothing moves the shaft any more. Wings that still pitch shake it: they can only come
-/// to rest, so that a shaft which stands long enough does so for good.
-bool DirectStartUp::rests_for_good() {
-  const bool no_drive = model_.vehicle.voltage == 0.0 && std::abs(now_.moving.speed) < 1e-9 * model_.speed_scale &&
-                        std::abs(now_.moving.angle) < 1e-9 * model_.angle_scale && swing_ < 1e-9 * model_.angle_scale &&
-                        wings_are_still();
-  if (!now_.stuck) stuck_until_ = infinity;
-  if (!now_.stuck && !no_drive) return false;
-  const StandingTorques<double> torques = model_.standing_torques(now_.moving.angle);
-  const double load = 0.5 * (torques.low + torques.high), hold = 0.5 * (torques.high - torques.low);
-  const double torque = largest_torque() + std::abs(load);
-  if (now_.stuck && !no_drive) {
-    if (torque > hold && model_.wings_rest()) return false;
-    if (!model_.wings_rest()) {
-      const PitchingWings<double>& wings = model_.vehicle.pitch;
-      const double own = two_pi * std::sqrt((wings.pitch_inertia + wings.air.pp) / wings.hinge.stiffness);
-      if (stuck_until_ == infinity) stuck_until_ = now_.t + 3.0 * own + 2.0 * period_ + 20.0 * model_.electrical_time;
-      if (now_.t < stuck_until_) return false;
-    }
-  }
-  done_ = true;
-  result_.settled = true;
-  result_.status = FlappingStatus::stalled;
-  result_.time_to_steady = now_.t;
-  result_.lock_angle = now_.moving.angle;
-  result_.torque_margin = now_.stuck ? std::max(0.0, hold - torque) : 0.0;
-  if (now_.stuck) {
-    result_.evidence = {
-        .kind = Evidence::held_shaft, .angle = now_.moving.angle, .torque = torque, .friction_torque = hold};
-  } else {
-    result_.evidence = {.kind = Evidence::no_voltage};
-  }
-  return true;
-}
-
-/// Of wings that pitch: as nearly as the stroke has to be where nothing drives it.
-bool DirectStartUp::wings_are_still() const {
-  return !model_.indices.pitching || (std::abs(now_.moving.pitch_angle) < 1e-9 * model_.pitch_scale &&
-                                      std::abs(now_.moving.pitch_velocity) < 1e-9 * model_.pitch_velocity_scale);
-}
-
-/// True, with the decision, where the drive alone cannot break the shaft away and the springs let it creep towards an
-/// angle of rest: from standstill to standstill the angle is a monotone map of itself, and slips in one direction end
-/// where there are none.
-bool DirectStartUp::creeps_to_rest() {
-  const double travel = std::max(travel_[0], travel_[1]), back = std::min(travel_[0], travel_[1]);
-  const bool creeps =
-      now_.stuck && model_.drive_torque <= model_.constant_friction && travel < last_travel_ && back <= 1e-6 * travel;
-  creeping_ = creeps ? creeping_ + 1 : 0;
-  last_travel_ = travel;
-  travel_[0] = travel_[1] = 0.0;
-  if (creeping_ < creep_periods) return false;
-  done_ = true;
-  result_.settled = true;
-  result_.status = FlappingStatus::stalled;
-  result_.time_to_steady = now_.t;
-  result_.lock_angle = now_.moving.angle;
-  result_.torque_margin = model_.constant_friction - model_.drive_torque;
-  result_.evidence = {.kind = Evidence::creeping_shaft,
-                      .angle = now_.moving.angle,
-                      .torque = model_.drive_torque,
-                      .friction_torque = model_.constant_friction,
-                      .travel = travel};
-  return true;
-}
-
 /// The decision that it flaps, with the metrics taken: how far periods are from the orbit, and from each other.
 void DirectStartUp::settle(double closure, double change) {
   done_ = true;
@@ -497,12 +347,6 @@ TransientResult DirectStartUp::run() {
   result_.end_time = now_.t;
   result_.end_crank_angle = now_.moving.angle;
   return std::move(result_);
-}
-
-}  // namespace
-
-TransientResult simulate_direct_start_up(const Vehicle<double>& vehicle, const TransientOptions& options) {
-  return DirectStartUp(vehicle, options).run();
 }
 
 }  // namespace wingbeat::detail
