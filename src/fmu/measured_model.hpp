@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "fmu/dynamics.hpp"
-#include "time/simulation.hpp"
+#include "time/event_loop.hpp"
 #include "time/time_model.hpp"
 
 namespace wingbeat::fmu {

@@ -65,9 +65,7 @@ bool CrankStartUp::swings_repeat() {
   window_cycles_ = crossings_.size();
   window_end_ = now_.t + window_;
   if (repeats_ < 3) return false;
-  done_ = true;
-  result_.settled = true;
-  result_.status = FlappingStatus::locked;
+  decide(FlappingStatus::locked);
   result_.time_to_steady = now_.t;
   if (model_.supply.type == SupplyType::pwm && stalls(wrap_angle(now_.moving.angle))) return true;
   if (last_high_ - last_low_ < same_swing) result_.lock_angle = wrap_angle(0.5 * (last_low_ + last_high_));
@@ -134,8 +132,7 @@ bool CrankStartUp::stalls(double angle) {
 }
 
 void CrankStartUp::rest(double theta, bool held_by_friction) {
-  done_ = true;
-  result_.settled = true;
+  decide(FlappingStatus::locked);
   now_.moving.angle = theta;
   now_.moving.speed = 0.0;
   const double R = circuit_resistance(model_.vehicle);
@@ -146,7 +143,6 @@ void CrankStartUp::rest(double theta, bool held_by_friction) {
   result_.torque_margin = held_by_friction ? std::max(0.0, model_.holding_torque(theta) - load) : 0.0;
   result_.time_to_steady = now_.t;
   if (stalls(angle)) return;
-  result_.status = FlappingStatus::locked;
   if (held_by_friction) {
     result_.evidence = {.kind = Evidence::friction_holds,
                         .angle = angle,
@@ -158,10 +154,8 @@ void CrankStartUp::rest(double theta, bool held_by_friction) {
 }
 
 void CrankStartUp::jam(double theta) {
-  done_ = true;
+  decide(FlappingStatus::jammed);
   event(Kind::jam);
-  result_.settled = true;
-  result_.status = FlappingStatus::jammed;
   result_.time_to_steady = now_.t;
   if (stalls(wrap_angle(theta))) return;
   result_.jam_angle = wrap_angle(theta);
@@ -182,7 +176,7 @@ void CrankStartUp::give_up(StatusEvidence why) {
   result_.status = FlappingStatus::undecided;
   result_.time_to_steady = now_.t;
   if (turning) {
-    if (measuring_ && measured_cycles_ > 0 && model_.supply.type != SupplyType::constant) {
+    if (model_.measuring && measured_cycles_ > 0 && model_.supply.type != SupplyType::constant) {
       result_.cycle_scatter = cycle_scatter(std::size_t(measured_cycles_));
     }
     why.frequency = 1.0 / cycle_time(n - 1);

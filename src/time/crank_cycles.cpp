@@ -31,7 +31,7 @@ bool CrankStartUp::cycle_done() {
   crossings_.push_back({now_.t, now_.moving.speed, now_.moving.current, now_.t - before, 0.0, now_.moving.pitch_angle,
                         now_.moving.pitch_velocity});
   event(Kind::revolution);
-  next_cycle_ += two_pi;
+  model_.next_cycle += two_pi;
   const bool restart = model_.supply.type == SupplyType::constant ? cycle_done_constant() : cycle_done_averaging();
   if (!done_ && int(crossings_.size()) >= options_.max_cycles) {
     give_up({.kind = Evidence::cycles_differ, .change = change_, .cycles = options_.max_cycles});
@@ -59,7 +59,7 @@ bool CrankStartUp::cycle_done_constant() {
   const double noise = 30.0 * relative_tolerance_;
   const double previous = change_;
   change_ = state_change(before);
-  if (cycles_compared_ >= 3 && previous > noise && !measuring_) {
+  if (cycles_compared_ >= 3 && previous > noise && !model_.measuring) {
     last_rate_ = rate_;
     rate_ = std::min(change_ / previous, 10.0);
     if (!rate_seen_) last_rate_ = rate_;
@@ -67,8 +67,9 @@ bool CrankStartUp::cycle_done_constant() {
   }
   // The slower of the last two contractions, since complex multipliers make the changes uneven.
   double rate = std::max(rate_, last_rate_);
-  stagnant_ = !measuring_ && change_ < 100.0 * noise && change_ > 0.5 * previous ? stagnant_ + 1 : 0;
-  if ((change_ < noise && cycles_compared_ >= 3 && !measuring_ && (!rate_seen_ || rate >= 0.3)) || stagnant_ >= 2) {
+  stagnant_ = !model_.measuring && change_ < 100.0 * noise && change_ > 0.5 * previous ? stagnant_ + 1 : 0;
+  if ((change_ < noise && cycles_compared_ >= 3 && !model_.measuring && (!rate_seen_ || rate >= 0.3)) ||
+      stagnant_ >= 2) {
     // Slow approach or the integrator's own errors? More accuracy tells; at rounding it must be the latter.
     stagnant_ = 0;
     if (relative_tolerance_ <= tightest_ && change_ < 0.1 * options_.tolerance) rate_ = last_rate_ = rate = 0.5;
@@ -76,7 +77,7 @@ bool CrankStartUp::cycle_done_constant() {
   }
   const double to_come = rate < 1.0 ? change_ * rate / (1.0 - rate) : infinity;
 
-  if (measuring_) {
+  if (model_.measuring) {
     cycle_measured(rate);
     return true;
   }
@@ -90,7 +91,7 @@ bool CrankStartUp::cycle_done_constant() {
   }
   if (to_come < 0.1 * options_.tolerance || (rate < 1.0 && change_ < noise)) {
     relative_tolerance_ = std::max(tightest_, std::min(relative_tolerance_, 1e-3 * options_.tolerance));
-    begin_measuring();
+    measure_next();
     return true;
   }
   return jump_ahead(rate);
@@ -106,7 +107,7 @@ void CrankStartUp::cycle_measured(double rate) {
   const double off = change_ * gain;
   const bool tightest = relative_tolerance_ <= tightest_;
   const std::optional<Metrics<double>> before = std::exchange(last_metrics_, std::nullopt);
-  take_metrics(int(turns_));
+  take_cycles(int(turns_));
   ++measured_cycles_;
   cycles_at_tightest_ += tightest;
   const bool closed = off < 0.1 * tolerance;
@@ -130,7 +131,7 @@ void CrankStartUp::cycle_measured(double rate) {
   measured_with_ = relative_tolerance_;
   if (change_ > 100.0 * tolerance || cycles_at_tightest_ > 40) {
     // Not what was known of the contraction: back to plain cycles.
-    measuring_ = false;
+    model_.measuring = false;
     change_ = infinity;
     rate_ = last_rate_ = 1.0;
     rate_seen_ = false;
@@ -153,7 +154,7 @@ void CrankStartUp::cycle_measured(double rate) {
     cycles_since_jump_ = 0;
     change_before_jump_ = change_;
   }
-  begin_measuring();
+  measure_next();
 }
 
 /// True if the state repeats after so many cycles, far better than after one.
@@ -281,18 +282,18 @@ bool CrankStartUp::jump_by_blocks(std::size_t n, std::size_t block) {
 bool CrankStartUp::cycle_done_averaging() {
   constexpr std::size_t window = averaged_cycles_pwm;
   const std::size_t n = crossings_.size();
-  if (measuring_) {
+  if (model_.measuring) {
     if (++measured_cycles_ < int(window)) return false;
     result_.cycle_scatter = cycle_scatter(window);
-    take_metrics(int(window));
+    take_cycles(int(window));
     const EnergyAudit audit = energy_audit(*result_.metrics);
     const double stored = (model_.stored_energy() - stored_mark_) / (now_.t - measured_from_);
     if (closes(audit, options_.tolerance, stored + load_power())) {
       flap();
     } else if (relative_tolerance_ > tightest_) {
       relative_tolerance_ = std::max(tightest_, relative_tolerance_ / 10.0);
-      measuring_ = false;
-      begin_measuring();
+      model_.measuring = false;
+      measure_next();
     } else {
       give_up_open_balance(audit);
     }
@@ -302,17 +303,12 @@ bool CrankStartUp::cycle_done_averaging() {
   const double newer = cycle_time(n - 1) + cycle_time(n - 2), older = cycle_time(n - 3) + cycle_time(n - 4);
   change_ = std::abs(newer / older - 1.0);
   if (change_ > std::max(options_.tolerance, 1e-4) && n < 40) return false;
-  begin_measuring();
+  measure_next();
   return true;
 }
 
 double CrankStartUp::load_power() const {
   return load_work(model_.vehicle) / result_.integrals[std::size_t(Integral::time)];
-}
-
-void CrankStartUp::give_up_open_balance(const EnergyAudit& audit) {
-  result_.metrics.reset();
-  give_up({.kind = Evidence::open_balance, .change = std::abs(audit.imbalance / audit.electrical)});
 }
 
 double CrankStartUp::cycle_scatter(std::size_t cycles) const {
@@ -323,50 +319,23 @@ double CrankStartUp::cycle_scatter(std::size_t cycles) const {
   return scatter;
 }
 
-void CrankStartUp::begin_measuring() {
-  if (!measuring_) measured_cycles_ = 0;
-  measuring_ = true;
-  std::fill(std::begin(q_), std::end(q_), 0.0);
+void CrankStartUp::measure_next() {
+  if (!model_.measuring) measured_cycles_ = 0;
   ripple_sum_ = 0.0;
   ripple_count_ = 0;
   ripple_bottom_ = absent;
-  extremes_.fill(-infinity);
-  variation_ = 0.0;
-  energy_mark_ = model_.wing_energy();
-  motor_mark_ = model_.motor_energy();
-  stored_mark_ = model_.stored_energy();
-  impulses_mark_ = now_.impulses;
-  measured_from_ = now_.t;
-  measured_angle_ = next_cycle_ - two_pi;
-  result_.cycle.clear();
-  pitching_.begin(model_);
+  measured_angle_ = model_.next_cycle - two_pi;
+  begin_measuring();
 }
 
-void CrankStartUp::add_variation() {
-  const double energy = model_.wing_energy();
-  variation_ += std::abs(energy - energy_mark_);
-  energy_mark_ = energy;
-}
-
-void CrankStartUp::take_metrics(int cycles) {
+void CrankStartUp::take_cycles(int cycles) {
   const std::size_t n = crossings_.size();
-  const double start = int(n) > cycles ? crossings_[n - 1 - std::size_t(cycles)].time : 0.0;
-  CycleIntegrals<double>& integrals = result_.integrals;
-  for (int k = 0; k < quadrature_count; ++k) {
-    const auto which = std::size_t(quadratures[k]);
-    integrals[which] = (q_[k] + now_.impulses[which] - impulses_mark_[which]) / cycles;
-  }
-  integrals[std::size_t(Integral::time)] = (now_.t - start) / cycles;
-  integrals[std::size_t(Integral::reactive_work)] = variation_ / cycles;
-  set_gear_work(model_.vehicle.motor, (model_.motor_energy() - motor_mark_) / cycles, integrals);
   if (model_.indices.pitching) {
     // Of a crank that stands for a while, what rounding leaves of the speed is none.
     double& slowest = extremes_[std::size_t(Extreme::crank_speed_min)];
     if (std::abs(slowest) < 1e-9 * model_.speed_scale) slowest = 0.0;
   }
-  result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
-  if (model_.indices.pitching) pitching_.finish(model_, start, now_.t, cycles, *result_.metrics);
-  result_.averaged_cycles = cycles;
+  take_metrics(int(n) > cycles ? crossings_[n - 1 - std::size_t(cycles)].time : 0.0, now_.t, cycles);
   if (ripple_count_ > 0) result_.current_ripple = ripple_sum_ / double(ripple_count_);
 }
 

@@ -33,20 +33,15 @@ bool DirectStartUp::rests_for_good() {
   if (!now_.stuck) stuck_until_ = infinity;
   if (!now_.stuck && !no_drive) return false;
   const StandingTorques<double> torques = model_.standing_torques(now_.moving.angle);
-  const double load = 0.5 * (torques.low + torques.high), hold = 0.5 * (torques.high - torques.low);
-  const double torque = largest_torque() + std::abs(load);
+  const double hold = torques.friction(), torque = largest_torque() + std::abs(torques.middle());
   if (now_.stuck && !no_drive) {
     if (torque > hold && model_.wings_rest()) return false;
     if (!model_.wings_rest()) {
-      const PitchingWings<double>& wings = model_.vehicle.pitch;
-      const double own = two_pi * std::sqrt((wings.pitch_inertia + wings.air.pp) / wings.hinge.stiffness);
-      if (stuck_until_ == infinity) stuck_until_ = now_.t + 3.0 * own + 2.0 * period_ + 20.0 * model_.electrical_time;
+      if (stuck_until_ == infinity) stuck_until_ = shaken_until();
       if (now_.t < stuck_until_) return false;
     }
   }
-  done_ = true;
-  result_.settled = true;
-  result_.status = FlappingStatus::stalled;
+  decide(FlappingStatus::stalled);
   result_.time_to_steady = now_.t;
   result_.lock_angle = now_.moving.angle;
   result_.torque_margin = now_.stuck ? std::max(0.0, hold - torque) : 0.0;
@@ -76,9 +71,7 @@ bool DirectStartUp::creeps_to_rest() {
   last_travel_ = travel;
   travel_[0] = travel_[1] = 0.0;
   if (creeping_ < creep_periods) return false;
-  done_ = true;
-  result_.settled = true;
-  result_.status = FlappingStatus::stalled;
+  decide(FlappingStatus::stalled);
   result_.time_to_steady = now_.t;
   result_.lock_angle = now_.moving.angle;
   result_.torque_margin = model_.constant_friction - model_.drive_torque;

@@ -30,19 +30,16 @@ inline IntegratorProblem problem_of(const TimeModel& model, const double& relati
   return p;
 }
 
-/// The problem of a model with `quadratures` behind the unknowns, which are of the sizes `scale`.
-inline IntegratorProblem problem_with_quadratures(const TimeModel& model, const double& relative,
-                                                  const double (&scale)[quadrature_count]) {
-  IntegratorProblem p = problem_of(model, relative);
+/// Adds `quadratures` behind the unknowns, which are of the sizes `scale`; the rates are to be those with them.
+inline void add_quadratures(IntegratorProblem& p, const TimeModel& model, const double& relative,
+                            const double (&scale)[quadrature_count]) {
   p.size += quadrature_count;
-  p.rates = [&](double t, const double* y, double* dy) { return model.rates(t, y, dy, true); };
   p.tolerated = [&](const double* y, double* errors) {
     model.tolerated(relative, y, errors);
     for (int k = model.coupled; k < model.coupled + quadrature_count; ++k) {
       errors[k] = relative * (std::abs(y[k]) + 0.01 * scale[k - model.coupled]);
     }
   };
-  return p;
 }
 
 }  // namespace wingbeat::detail

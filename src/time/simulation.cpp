@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-#include "time/simulation.hpp"
+#include "time/event_loop.hpp"
 #include "time/time_model.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/vehicle/drive.hpp"
@@ -21,9 +21,11 @@ using detail::TimeModel;
 double turns_at(double theta) { return std::floor(theta / two_pi); }
 
 /// Keeps the events, and stops where it is asked to.
-struct EventWatch {
+struct EventWatch : detail::NoWatch {
   std::vector<TransientEvent> events;
   const StepOptions& options;
+
+  explicit EventWatch(const StepOptions& step_options) : options(step_options) {}
 
   std::optional<double> stepped(const TimeModel& model, detail::Integrator& steps, double from) {
     if (options.check) options.check();
@@ -169,7 +171,7 @@ std::vector<TransientEvent> Simulation::step_to(double until, const StepOptions&
     throw ParameterError(
         "time", detail::format("must not lie in the past: the simulation is at %.10g s, got %.10g s", time(), until));
   }
-  EventWatch watch{{}, options};
+  EventWatch watch(options);
   TimeModel& model = model_->in_time;
   BackUnlessDone back{model};
   detail::StepOutcome outcome = detail::StepOutcome::reached;

@@ -268,10 +268,11 @@ void TimeModel::tolerated(double relative, const double* y, double* errors) cons
 }
 
 double TimeModel::longest_step() const {
-  if (!direct) return 0.25 * time_scale;
   // Of a shaft that stands, no slip may hide within a step.
-  return time_scale / (now.stuck ? 64.0 : indices.pitching ? 16.0 : 4.0);
+  return direct && now.stuck ? time_scale / 64.0 : longest_moving_step();
 }
+
+double TimeModel::longest_moving_step() const { return time_scale / (direct && indices.pitching ? 16.0 : 4.0); }
 
 bool TimeModel::stiff() const {
   const double span = drive_period > 0.0 ? std::min(time_scale, drive_period) : time_scale;

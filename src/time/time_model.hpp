@@ -57,7 +57,7 @@ class TimeModel {
   /// Sets typical sizes, and what follows from them, for voltages up to this one [V]: start() does so for the supply's.
   void scale_to(double highest_voltage);
 
-  // What an integrator asks, and step_to().
+  // What an integrator asks, and the loop through its events (time/event_loop.hpp).
   bool ended() const { return now.jammed; }
   /// Decides on what branch it goes on.
   void begin_piece();
@@ -70,6 +70,8 @@ class TimeModel {
   std::array<int, indicator_count> directions() const;
   /// One of them has changed its sign.
   void handle(std::size_t indicator);
+  /// Whether the integrator starts afresh after it.
+  static constexpr bool ends_piece(std::size_t) { return true; }
   /// What that is to those who watch, but for impacts and jams.
   std::optional<TransientEvent::Kind> event_at(std::size_t indicator) const;
   /// True where a sign was wrong from the start of the piece, which an integrator may not see as a change.
@@ -78,6 +80,7 @@ class TimeModel {
   void tolerated(double relative, const double* y, double* errors) const;
   std::array<double, max_unknowns> typical() const;
   double longest_step() const;
+  double longest_moving_step() const;  ///< where nothing stands
   bool stiff() const;
 
   double voltage(double t) const {

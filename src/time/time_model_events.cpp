@@ -23,14 +23,10 @@ StandingTorques<double> TimeModel::standing_torques(const double* y) const {
 }
 
 double TimeModel::net_static_torque(double angle, double i) const {
-  const StandingTorques<double> torques = standing_torques(angle);
-  return vehicle.motor.torque_constant * i - 0.5 * (torques.low + torques.high);
+  return vehicle.motor.torque_constant * i - standing_torques(angle).middle();
 }
 
-double TimeModel::holding_torque(double angle) const {
-  const StandingTorques<double> torques = standing_torques(angle);
-  return 0.5 * (torques.high - torques.low);
-}
+double TimeModel::holding_torque(double angle) const { return standing_torques(angle).friction(); }
 
 void TimeModel::choose_force_branch() {
   if (wingless || !force_matters) return;
@@ -59,10 +55,9 @@ std::array<double, TimeModel::indicator_count> TimeModel::indicators(double t, c
   values.fill(1.0);
   if (now.stuck) {
     const StandingTorques<double> torques = standing_torques(y);
-    const double K = vehicle.motor.torque_constant, torque = K * current_of(t, y);
-    const double hold = 0.5 * (torques.high - torques.low);
+    const double K = vehicle.motor.torque_constant;
     values[standstill] =
-        std::min(torques.high - torque, torque - torques.low) / (indices.pitching ? K * current_scale : hold);
+        torques.margin(K * current_of(t, y)) / (indices.pitching ? K * current_scale : torques.friction());
   } else if (jumps_) {
     values[standstill] = y[1] / speed_scale;
   }
@@ -100,8 +95,8 @@ void TimeModel::begin_piece() {
     unknowns(y);
     const StandingTorques<double> torques = standing_torques(y);
     const double torque = vehicle.motor.torque_constant * now.moving.current;
-    now.direction = sign_of(torque - 0.5 * (torques.low + torques.high));
-    now.stuck = torques.low < torques.high && torque >= torques.low && torque <= torques.high;
+    now.direction = torques.direction(torque);
+    now.stuck = torques.hold(torque);
     if (now.stuck) return;
   }
   choose_force_branch();
@@ -117,9 +112,7 @@ void TimeModel::handle(std::size_t indicator) {
     if (now.stuck) {
       double y[max_unknowns];
       unknowns(y);
-      const StandingTorques<double> torques = standing_torques(y);
-      now.direction =
-          sign_of(vehicle.motor.torque_constant * current_of(now.t, y) - 0.5 * (torques.low + torques.high));
+      now.direction = standing_torques(y).direction(vehicle.motor.torque_constant * current_of(now.t, y));
       now.leaving = true;
     }
     now.stuck = false;

@@ -3,7 +3,7 @@
 
 #include <random>
 
-#include "time/simulation.hpp"
+#include "time/event_loop.hpp"
 #include "time/time_model.hpp"
 #include "vehicle/pitching_vehicle.hpp"
 #include "vehicle/recorded_impacts.hpp"

@@ -1,5 +1,5 @@
 // The models in time, stepped to any moment and back, without a decision.
-#include "time/simulation.hpp"
+#include "time/event_loop.hpp"
 
 #include <gtest/gtest.h>
 

@@ -160,6 +160,16 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     return relative_energy_gap(vehicle, totals);
   }
 
+  /// The state where everything is like this.
+  static State state_of(const Coordinates<S>& c) {
+    State y{};
+    if constexpr (!turns) y[0] = c.angle;
+    y[shaft] = c.speed;
+    if constexpr (inductive) y[current_state] = c.current;
+    if constexpr (on_hinges) y[pitch] = c.pitch_angle, y[pitch + 1] = c.pitch_velocity;
+    return y;
+  }
+
   /// Rate of the independent variable [rad/s].
   S phase_rate() const
     requires(!turns_)
@@ -392,7 +402,7 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     if constexpr (!turns) {
       const bool stuck = value_of(signs[slip]) < 0.0;
       r.switches[velocity] = stuck ? signs[velocity] : y[shaft];
-      r.switches[release] = stuck ? holding_margin(place, y, signs) : S(1.0);
+      r.switches[release] = stuck ? at_rest(place, y, signs).margin() : S(1.0);
       if (!force_has_branches(vehicle)) r.switches[force] = S(1.0);
       if (stuck) r.switches[force] = signs[force], r.switches[gear] = signs[gear];
     }
@@ -421,6 +431,8 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
   struct AtRest {
     S torque;
     StandingTorques<S> torques;
+    S margin() const { return torques.margin(torque); }
+    S direction() const { return torques.direction(torque); }
   };
   AtRest at_rest(const S& phi, State y, const Signs& signs) const {
     y[shaft] = S(0.0);
@@ -430,12 +442,6 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     const CrankKinematics<S>& k = here.configuration.kinematics;
     return {vehicle.motor.torque_constant * here.current, standing_torques(vehicle, k, static_rod_force(k, moment))};
   }
-  /// Positive while friction holds the shaft [N m].
-  S holding_margin(const S& phi, const State& y, const Signs& signs) const {
-    const AtRest rest = at_rest(phi, y, signs);
-    const S above = rest.torques.high - rest.torque, below = rest.torque - rest.torques.low;
-    return value_of(above) < value_of(below) ? above : below;
-  }
 
   void rest_or_release(std::size_t k, const S& phi, State& y, Signs& signs) const {
     if (k == velocity) {
@@ -443,21 +449,13 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
       hold_or_move(phi, y, signs);
     } else {
       signs[slip] = S(1.0);
-      signs[velocity] = direction_from_rest(at_rest(phi, y, signs));
+      signs[velocity] = at_rest(phi, y, signs).direction();
     }
   }
   void hold_or_move(const S& phi, const State& y, Signs& signs) const {
     const AtRest rest = at_rest(phi, y, signs);
-    const double torque = value_of(rest.torque);
-    if (torque >= value_of(rest.torques.low) && torque <= value_of(rest.torques.high)) {
-      signs[slip] = S(-1.0);
-    } else {
-      signs[slip] = S(1.0);
-      signs[velocity] = direction_from_rest(rest);
-    }
-  }
-  static S direction_from_rest(const AtRest& rest) {
-    return sign_of(S(rest.torque - S(0.5) * (rest.torques.low + rest.torques.high)));
+    signs[slip] = S(rest.torques.hold(rest.torque) ? -1.0 : 1.0);
+    if (value_of(signs[slip]) > 0.0) signs[velocity] = rest.direction();
   }
 };
 

@@ -38,16 +38,15 @@ struct SharedSearch {
 SteadyFlapping find_flapping_among(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                    const StartUp& start_up, SharedSearch& shared);
 
-/// The steady flapping of a direct drive; see find_steady_flapping.
-SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
-                                    const StartUp& start_up, SharedSearch& shared);
-
-/// The steady flapping of a direct drive whose wings pitch on hinges.
-SteadyFlapping find_pitching_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
-                                      const StartUp& start_up, SharedSearch& shared);
-/// The steady flapping of a crank whose wings pitch on hinges.
+/// The steady flapping of a vehicle of one kind; see find_steady_flapping.
+SteadyFlapping find_crank_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                   const StartUp& start_up, SharedSearch& shared);
 SteadyFlapping find_pitching_crank_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                             const StartUp& start_up, SharedSearch& shared);
+SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                    const StartUp& start_up, SharedSearch& shared);
+SteadyFlapping find_pitching_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                      const StartUp& start_up, SharedSearch& shared);
 
 /// The start of every search under a crank: its statics. True, with the decision, of a motor that never starts.
 bool stalls(const StaticBalance& statics, SteadyFlapping& result);
@@ -139,7 +138,8 @@ class OrbitSearch {
 
   /// True where wings over-rotate for a notable part of the period: there, a second orbit is stable now and then.
   bool over_rotates() {
-    return system_.vehicle.wings.air_density > 0.0 && pitch().over_rotation_of_moving() > notable_over_rotation;
+    if constexpr (!System::on_hinges) return false;
+    else return system_.vehicle.wings.air_density > 0.0 && pitch().over_rotation_of_moving() > notable_over_rotation;
   }
 
   void fill(SteadyFlapping& result) {

@@ -245,6 +245,19 @@ S holding_torque(const V<S>& v, const S& F_s) {
 template <Scalar S>
 struct StandingTorques {
   S low, high;
+
+  bool hold(const S& torque) const {
+    return value_of(low) < value_of(high) && value_of(torque) >= value_of(low) && value_of(torque) <= value_of(high);
+  }
+  /// Positive while they hold [N m].
+  S margin(const S& torque) const {
+    const S above = high - torque, below = torque - low;
+    return value_of(above) < value_of(below) ? above : below;
+  }
+  S middle() const { return S(0.5) * (low + high); }    ///< the torque against which it starts either way alike
+  S friction() const { return S(0.5) * (high - low); }  ///< what friction can hold
+  /// In which it starts under a torque that they do not hold.
+  S direction(const S& torque) const { return sign_of(S(torque - middle())); }
 };
 template <template <Scalar> class V, Scalar S>
 StandingTorques<S> standing_torques(const V<S>& v, const CrankKinematics<S>& k, const S& F_s) {

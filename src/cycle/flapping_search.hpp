@@ -1,0 +1,180 @@
+// How the steady flapping of one vehicle is found, whatever drives it: stable orbits from several starts, and where
+// they leave a doubt, the one that it reaches from rest. Where searches start and what their end means is the drive's
+// matter: cycle/crank_search.hpp, cycle/direct_search.hpp.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "wingbeat/cycle/orbit_search.hpp"
+
+namespace wingbeat::detail {
+
+/// The stable orbits of a vehicle that searches have found so far, and what they have found beside.
+template <class System>
+class StableOrbits {
+ public:
+  using State = typename System::State;
+  /// Evaluations that all searches may take together.
+  static constexpr long all = System::on_hinges ? pitching_search_work : orbit_search_work;
+
+  StableOrbits(const System& system, const SteadyOptions& options, SharedSearch& shared)
+      : system_(system), options_(options), shared_(shared) {}
+
+  /// Searches from a state; keeps the orbit found if it is stable and none that is known. It may take so many
+  /// evaluations: one start may not take what is left for the others.
+  void attempt(const State& guess, long max_evaluations = all, double expected_multiplier = 1.0) {
+    keep(guess, max_evaluations, [&](auto& orbit) { return orbit.search(guess, expected_multiplier); });
+  }
+  void attempt_near(const State& guess, long max_evaluations = all) {
+    keep(guess, max_evaluations, [&](auto& orbit) { return orbit.search_near(guess); });
+  }
+
+  /// Which of them it is that a simulation has settled on, at that state; it is sought there where none is known.
+  std::optional<std::size_t> reached_at(const State& settled) {
+    std::optional<std::size_t> which = nearest_to(settled);
+    if (!which) attempt_near(settled), which = nearest_to(settled);
+    if (!which && !System::on_hinges) attempt(settled), which = nearest_to(settled);
+    return which;
+  }
+
+  bool empty() const { return orbits_.empty(); }
+  std::size_t size() const { return orbits_.size(); }
+  OrbitSearch<System>& operator[](std::size_t which) { return orbits_[which]; }
+
+  const System& system() const { return system_; }
+  const solver::PeriodicSummary& last() const { return last_; }  ///< of the last search
+  int iterates() const { return iterates_; }                     ///< of all searches
+  double imbalance() const { return imbalance_; }  ///< of a cycle refused for its energy balance; absent without
+  /// Of an orbit found that is unstable; absent without.
+  double unstable_multiplier() const { return unstable_multiplier_; }
+  double unstable_frequency() const { return unstable_frequency_; }
+  /// A search that ended with its evaluations was here last, if there was one.
+  const std::optional<State>& unfinished() const { return unfinished_; }
+
+  /// Nothing returns a shaft without springs to any angle: a multiplier of 1 there.
+  bool springs_return() const { return System::turns || system_.vehicle.spring.stiffness > 0.0; }
+
+ private:
+  template <class Search>
+  void keep(const State& guess, long max_evaluations, const Search& search) {
+    constexpr double same = 1e-3;  // orbits that are nearer to each other are one
+    if (!system_.admissible(guess)) return;
+    solver::WorkBudget part = shared_.work.part(max_evaluations);
+    OrbitSearch<System> orbit(system_, options_, part);
+    const bool found = search(orbit);
+    shared_.work.used += part.used;
+    iterates_ += orbit.summary().iterates;
+    last_ = orbit.summary();
+    if (last_.status == solver::PeriodicStatus::unbalanced) imbalance_ = orbit.imbalance();
+    if (last_.status == solver::PeriodicStatus::out_of_work && orbit.started() && !unfinished_) {
+      unfinished_ = orbit.start();
+    }
+    if (!found) return;
+    if (springs_return() && !(orbit.multiplier() < 1.0)) {
+      unstable_multiplier_ = orbit.multiplier();
+      unstable_frequency_ = orbit.frequency();
+      return;
+    }
+    for (const OrbitSearch<System>& known : orbits_) {
+      if (apart(known.start(), orbit.start(), springs_return() ? 0 : 1) < same) return;
+    }
+    orbits_.push_back(std::move(orbit));
+  }
+
+  std::optional<std::size_t> nearest_to(const State& settled) const {
+    constexpr double close = 1e-2;
+    const auto nearest = std::min_element(orbits_.begin(), orbits_.end(), [&](const auto& a, const auto& b) {
+      return apart(a.start(), settled) < apart(b.start(), settled);
+    });
+    if (nearest == orbits_.end() || !(apart(nearest->start(), settled) < close)) return std::nullopt;
+    return std::size_t(nearest - orbits_.begin());
+  }
+
+  /// Largest distance of two states, over their typical sizes; of a crank's speeds over the second one.
+  double apart(const State& a, const State& b, std::size_t from = 0) const {
+    double highest = 0.0;
+    for (std::size_t n = from; n < a.size(); ++n) {
+      const double size = System::turns && n == System::shaft ? b[n] : system_.typical[n];
+      highest = std::max(highest, std::abs(a[n] - b[n]) / size);
+    }
+    return highest;
+  }
+
+  System system_;
+  const SteadyOptions& options_;
+  SharedSearch& shared_;
+  std::vector<OrbitSearch<System>> orbits_;
+  solver::PeriodicSummary last_;
+  std::optional<State> unfinished_;
+  int iterates_ = 0;
+  double imbalance_ = absent, unstable_multiplier_ = absent, unstable_frequency_ = absent;
+};
+
+/// The steady flapping of a vehicle of one kind. Drive: CrankSearch or DirectSearch.
+template <class Drive>
+SteadyFlapping search_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up,
+                               SharedSearch& shared) {
+  using System = typename Drive::System;
+  SteadyFlapping result;
+  Drive drive(vehicle);
+  if (drive.stalls(result)) return result;
+  StableOrbits<System> orbits(drive.system(), options, shared);
+  if (System::on_hinges && shared.orbit.size() == std::tuple_size_v<typename System::State>) {
+    typename System::State before;
+    std::copy(shared.orbit.begin(), shared.orbit.end(), before.begin());
+    orbits.attempt_near(before, Drive::part);
+  }
+  if (orbits.empty()) drive.search(orbits);
+  shared.orbit.clear();
+  result.summary = orbits.last();
+
+  std::size_t chosen = 0;
+  const auto unresolved = [&] { return orbits.size() != 1 || drive.in_doubt(orbits) || orbits[0].over_rotates(); };
+  if (start_up && unresolved()) {
+    const StartUpOutcome outcome = start_up(vehicle);
+    if (outcome.status != FlappingStatus::flapping) {
+      result.status = outcome.status;
+      result.evidence = outcome.evidence;
+      if (result.status == FlappingStatus::undecided) result.evidence.search = orbits.last().status;
+      if (System::turns) {
+        result.evidence.faster_orbit = orbits.empty() ? orbits.unstable_frequency() : orbits[0].frequency();
+      }
+      return result;
+    }
+    std::optional<std::size_t> which;
+    if (outcome.settled) {
+      which = orbits.reached_at(System::state_of(
+          {outcome.stroke_angle, outcome.crank_speed, outcome.current, outcome.pitch_angle, outcome.pitch_velocity}));
+    }
+    result.summary = orbits.last();
+    if (!which) {
+      fill_simulated(outcome, options, !System::turns, result);
+      return result;
+    }
+    chosen = *which;
+  }
+  if (orbits.empty()) {
+    drive.explain(orbits, result);
+    return result;
+  }
+
+  std::optional<SteadyFlapping> other;
+  if (orbits.size() > 1) orbits[chosen == 0 ? 1 : 0].fill(other.emplace());
+  OrbitSearch<System>& orbit = orbits[chosen];
+  if (System::on_hinges && !other) shared.orbit.assign(orbit.start().begin(), orbit.start().end());
+  result.summary = orbit.summary();
+  result.summary.iterates = orbits.iterates();
+  orbit.fill(result);
+  if (!orbits.springs_return()) result.metrics[Metric::floquet_multiplier_max] = absent;
+  result.status = FlappingStatus::flapping;
+  const double over_rotation = vehicle.wings.air_density > 0.0 ? result.evidence.over_rotation : absent;
+  result.evidence = drive.evidence(result.metrics, other ? &other->metrics : nullptr, bool(start_up));
+  result.evidence.over_rotation = over_rotation;
+  return result;
+}
+
+}  // namespace wingbeat::detail

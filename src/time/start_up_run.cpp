@@ -1,0 +1,203 @@
+#include "time/start_up_run.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace wingbeat::detail {
+
+std::array<double, CycleModel::indicator_count> CycleModel::indicators(double t, const double* y) const {
+  std::array<double, indicator_count> all;
+  const auto own = TimeModel::indicators(t, y);
+  std::copy(own.begin(), own.end(), all.begin());
+  // Kinks of what is summed up, and under the pitch law hardly of the loads.
+  if (!measuring) all[stored_moment] = 1.0;
+  if (!measuring && !indices.pitching) all[reversal] = 1.0;
+  all[cycle_end] = direct ? -1.0 : y[0] - next_cycle;
+  return all;
+}
+
+std::array<int, CycleModel::indicator_count> CycleModel::directions() const {
+  std::array<int, indicator_count> all;
+  const auto own = TimeModel::directions();
+  std::copy(own.begin(), own.end(), all.begin());
+  all[cycle_end] = 1;
+  return all;
+}
+
+StartUpRun::StartUpRun(const Vehicle<double>& vehicle, const Supply<double>& supply, const TransientOptions& options,
+                       double per_tolerance, double per_tolerance_if_stiff)
+    : options_(options), model_(vehicle, supply) {
+  require(options.tolerance >= 1e-11 && options.tolerance <= 1e-2, "transient.tolerance",
+          "must lie between 1e-11 and 1e-2", "1", options.tolerance);
+  require(options.max_time >= 0.0, "transient.max_time", "must be >= 0", "s", options.max_time);
+  require(options.record_interval >= 0.0, "transient.record_interval", "must be >= 0", "s", options.record_interval);
+  require(std::isfinite(options.crank_angle), "transient.crank_angle", "must be finite", "rad", options.crank_angle);
+  require(std::isfinite(options.crank_speed), "transient.crank_speed", "must be finite", "rad/s", options.crank_speed);
+  require(std::isfinite(options.pitch_angle), "transient.pitch_angle", "must be finite", "rad", options.pitch_angle);
+  require(std::isfinite(options.pitch_velocity), "transient.pitch_velocity", "must be finite", "rad/s",
+          options.pitch_velocity);
+  require(std::isfinite(options.current), "transient.current", "must be finite", "A", options.current);
+
+  model_.start(
+      {options_.crank_angle, options_.crank_speed, options_.current, options_.pitch_angle, options_.pitch_velocity});
+  const Vehicle<double>& v = model_.vehicle;
+  const double current = model_.current_scale, speed = model_.speed_scale, K = v.motor.torque_constant;
+  const double slope = model_.direct ? 1.0 : typical_stroke_slope(v.transmission);
+  const double force = K * current / (model_.direct ? 1.0 : typical_crank_lever(v.transmission));
+  const double power = current * (K * speed + current * circuit_resistance(v));
+  const auto size = [&](Integral which) {
+    switch (which) {
+      case Integral::current: return current;
+      case Integral::current_square: return square(current);
+      case Integral::speed_square: return square(speed);
+      case Integral::travel: return speed;
+      case Integral::lift: return v.wings.air_density * v.wings.s2 * square(speed * slope) + 1e-6 * force;
+      case Integral::rod_force: return force;
+      default: return power;
+    }
+  };
+  for (int k = 0; k < quadrature_count; ++k) quadrature_scale_[k] = model_.time_scale * size(quadratures[k]);
+
+  stiff_ = result_.stiff = model_.stiff();
+  relative_tolerance_ = std::max(tightest_, (stiff_ ? per_tolerance_if_stiff : per_tolerance) * options.tolerance);
+}
+
+Integrator& StartUpRun::integrator() {
+  const bool measuring = model_.measuring;
+  std::unique_ptr<Integrator>& slot = measuring ? with_quadratures_ : plain_;
+  if (slot) return *slot;
+  IntegratorProblem p = problem_of(model_, relative_tolerance_);
+  if (measuring) add_quadratures(p, model_, relative_tolerance_, quadrature_scale_);
+  p.roots = int(CycleModel::indicator_count);
+  p.stiff = stiff_;
+  p.rates = [this, measuring](double t, const double* y, double* dy) {
+    ++result_.rate_evaluations;
+    return model_.rates(t, y, dy, measuring);
+  };
+  p.root_functions = [this](double t, const double* y, double* values) {
+    const auto indicators = model_.indicators(t, y);
+    std::copy(indicators.begin(), indicators.end(), values);
+  };
+  p.longest_step = model_.longest_moving_step();
+  slot = make_integrator(which_integrator(), std::move(p));
+  return *slot;
+}
+
+void StartUpRun::pass(double until) {
+  switch (pass_piece(model_, until, *this, [this]() -> Integrator& { return integrator(); })) {
+    case PieceOutcome::not_started: return give_up({.kind = Evidence::integrator_not_started});
+    case PieceOutcome::failed:
+      if (relative_tolerance_ < 1e-9) {
+        relative_tolerance_ = tightest_ = 10.0 * relative_tolerance_;
+        now_.force_known = now_.moving.speed != 0.0;
+        return;
+      }
+      return give_up({.kind = Evidence::integrator_failed,
+                      .angle = model_.direct ? now_.moving.angle : wrap_angle(now_.moving.angle),
+                      .time = now_.t});
+    default: return;
+  }
+}
+
+std::optional<double> StartUpRun::stepped(const TimeModel&, Integrator& steps, double from) {
+  step_taken(steps, from);
+  if (model_.measuring && model_.indices.pitching) pitching_.step_taken(model_, steps, from);
+  recorder_.step_taken({now_.t, now_.moving.angle, now_.moving.speed, now_.moving.current}, [&](double t) {
+    const double* y = steps.dense(t);
+    return TransientSample{t, y[0], y[1], model_.current_of(t, y)};
+  });
+  return std::nullopt;
+}
+
+bool StartUpRun::happened(const TimeModel&, Kind kind) {
+  event(kind);
+  return done_;
+}
+
+bool StartUpRun::steps_spent() {
+  ++result_.steps;
+  if (result_.steps > options_.max_steps) give_up({.kind = Evidence::out_of_steps, .steps = options_.max_steps});
+  else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) give_up({.kind = Evidence::cancelled});
+  return done_;
+}
+
+/// From now on, with implicit steps.
+void StartUpRun::take_stiff() {
+  stiff_ = result_.stiff = true;
+  plain_.reset();
+  with_quadratures_.reset();
+  now_.force_known = now_.moving.speed != 0.0;
+}
+
+void StartUpRun::begin_measuring() {
+  model_.measuring = true;
+  model_.totals.fill(0.0);
+  extremes_.fill(-infinity);
+  variation_ = 0.0;
+  energy_mark_ = model_.wing_energy();
+  motor_mark_ = model_.motor_energy();
+  stored_mark_ = model_.stored_energy();
+  impulses_mark_ = now_.impulses;
+  measured_from_ = now_.t;
+  result_.cycle.clear();
+  pitching_.begin(model_);
+}
+
+void StartUpRun::add_variation() {
+  const double energy = model_.wing_energy();
+  variation_ += std::abs(energy - energy_mark_);
+  energy_mark_ = energy;
+}
+
+void StartUpRun::take_metrics(double start, double end, int cycles) {
+  add_variation();
+  CycleIntegrals<double>& integrals = result_.integrals;
+  for (int k = 0; k < quadrature_count; ++k) {
+    const auto which = std::size_t(quadratures[k]);
+    integrals[which] = (model_.totals[std::size_t(k)] + now_.impulses[which] - impulses_mark_[which]) / cycles;
+  }
+  integrals[std::size_t(Integral::time)] = (end - start) / cycles;
+  integrals[std::size_t(Integral::reactive_work)] = variation_ / cycles;
+  set_gear_work(model_.vehicle.motor, (model_.motor_energy() - motor_mark_) / cycles, integrals);
+  result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
+  if (model_.indices.pitching) pitching_.finish(model_, start, end, cycles, *result_.metrics);
+  result_.averaged_cycles = cycles;
+}
+
+void StartUpRun::give_up_open_balance(const EnergyAudit& audit) {
+  result_.metrics.reset();
+  give_up({.kind = Evidence::open_balance, .change = std::abs(audit.imbalance / audit.electrical)});
+}
+
+void StartUpRun::track_extremes(Integrator& steps, double from, int intervals) {
+  raise_extremes(
+      [&](double t) {
+        const double* y = steps.dense(t);
+        Mode<double> mode;
+        const Motion<double> m = model_.motion(t, y, &mode);
+        return model_.direct ? extreme_candidates(m, m.stroke_velocity, mode, y[0]) : extreme_candidates(m, y[1], mode);
+      },
+      from, now_.t, intervals, extremes_);
+}
+
+void StartUpRun::take_rows(Integrator& steps, double start, double period, double angle_0, double slack) {
+  const int last = options_.cycle_rows - 1;
+  while (last > 0 && int(result_.cycle.size()) <= last) {
+    const double since = period * double(result_.cycle.size()) / last, t = start + since;
+    if (t > now_.t + slack * period) return;
+    const double* y = steps.dense(std::min(t, now_.t));
+    const Motion<double> m = model_.motion(t, y);
+    result_.cycle.push_back(waveform_row(model_.vehicle, m, since, y[0] - angle_0,
+                                         model_.direct ? m.stroke_velocity : y[1],
+                                         stroke_angle_at(model_.vehicle, m.kinematics, y[0]),
+                                         model_.indices.pitching ? y[model_.indices.pitch] : absent));
+  }
+}
+
+double StartUpRun::shaken_until() const {
+  const PitchingWings<double>& wings = model_.vehicle.pitch;
+  const double own = two_pi * std::sqrt((wings.pitch_inertia + wings.air.pp) / wings.hinge.stiffness);
+  return now_.t + 3.0 * own + 2.0 * model_.drive_period + 20.0 * model_.electrical_time;
+}
+
+}  // namespace wingbeat::detail
