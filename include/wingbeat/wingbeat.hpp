@@ -58,8 +58,8 @@ Simulation simulation(const Design<double>& design, const SimulationOptions& opt
 /// The equations of motion (1, 5-11, 21; of wings that pitch on hinges those of model.md section 12 as well), for
 /// integrators of the user's own. The state is crank angle, not wrapped [rad], crank speed [rad/s] and, with an
 /// armature inductance, current [A]; of a direct drive stroke angle [rad], flapping velocity [rad/s] and current;
-/// behind them, of wings that pitch on hinges, pitch angle [rad] and pitch velocity [rad/s]. The motor is as warm as
-/// its surroundings, as in simulate.
+/// behind them, of wings that pitch on hinges, pitch angle [rad] and pitch velocity [rad/s]; see time_state_names().
+/// The motor is as warm as its surroundings, as in simulate.
 ///
 /// The rates are continuous but for standstill, where friction changes its direction, and for what the supply does;
 /// they have kinks where the rod force, the stroke velocity, the pitch velocity or the torque of a lossy gearbox
@@ -73,7 +73,7 @@ class EquationsOfMotion {
 
   /// Of waveform_columns(), without units: "crank_angle", "crank_speed", "current".
   std::vector<std::string> state_names() const { return time_state_names(*vehicle_); }
-  std::size_t state_count() const { return 2u + std::size_t(inductive_) + 2u * std::size_t(pitching_); }
+  std::size_t state_count() const { return state_count_; }
   /// Derivatives of the state at a time [s], under the supply or, given one, under a voltage that is driven in its
   /// place through the same resistance [V]. Both hold state_count() numbers.
   void rates(double time, const double* state, double* derivatives, std::optional<double> voltage = {}) const;
@@ -81,7 +81,8 @@ class EquationsOfMotion {
  private:
   std::shared_ptr<const Vehicle<double>> vehicle_;
   Supply<double> supply_;
-  bool direct_, inductive_, pitching_;
+  bool direct_, inductive_;
+  std::size_t state_count_;
 };
 
 /// The metrics and their exact derivatives by the numeric keys of the vehicle file: gradients[k][Metric] is SI per SI

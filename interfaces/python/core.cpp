@@ -191,9 +191,9 @@ py::dict balance(const py::array_t<double>& values) {
   const EnergyAudit a = energy_audit(metrics);
   using namespace py::literals;
   return py::dict("electrical"_a = a.electrical, "copper"_a = a.copper, "viscous"_a = a.viscous,
-                  "motor_friction"_a = a.motor_friction, "gear"_a = a.gear, "friction"_a = a.friction,
-                  "hinge"_a = a.hinge, "aerodynamic"_a = a.aerodynamic, "residual"_a = a.residual,
-                  "imbalance"_a = a.imbalance);
+                  "electronics"_a = a.electronics, "motor_friction"_a = a.motor_friction, "gear"_a = a.gear,
+                  "friction"_a = a.friction, "hinge"_a = a.hinge, "aerodynamic"_a = a.aerodynamic,
+                  "residual"_a = a.residual, "imbalance"_a = a.imbalance);
 }
 
 py::dict differentiate(const Design<double>& design, const std::vector<std::string>& keys, const std::string& condition,
@@ -224,9 +224,9 @@ py::dict start_up(const Design<double>& design, const std::string& condition, do
   const Condition environment = choice<Condition>("condition", condition);
   options.tolerance = tolerance;
   options.max_time = max_time;
-  options.crank_angle = crank_angle;
-  options.crank_speed = crank_speed;
-  options.current = current;
+  options.start.angle = crank_angle;
+  options.start.speed = crank_speed;
+  options.start.current = current;
   options.record = true;
   options.record_interval = record_interval;
   const TransientResult found = listening([&] { return simulate(design, options, environment); });

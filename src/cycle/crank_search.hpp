@@ -25,10 +25,14 @@ class CrankSearch {
     State typical = System::state_of({0.0, no_load_, vehicle_.voltage / circuit_resistance(vehicle_)});
     if constexpr (System::on_hinges) {
       balanced_ = balanced_speed(vehicle_);
+      if constexpr (System::general) typical.fill(1.0), typical[System::shaft] = no_load_;
+      if (has_current_state(vehicle_)) typical[System::current_state] = vehicle_.voltage / circuit_resistance(vehicle_);
+      if (!pitches(vehicle_)) return {vehicle_, typical, 1e-4 * no_load_};
       const double speed = balanced_.slowest;
       const double psi = typical_pitch(vehicle_, typical_stroke_slope(vehicle_.transmission) * speed, speed);
       typical[System::pitch] = psi;
       typical[System::pitch + 1] = speed * psi;
+      if constexpr (System::general) typical[System::twist] = psi, typical[System::twist + 1] = speed * psi;
     }
     return {vehicle_, typical, 1e-4 * no_load_};
   }
@@ -39,6 +43,11 @@ class CrankSearch {
       // Where the pitching is lightly damped, the return map does not forget its start, and several orbits may be
       // stable.
       const double slope = crank_kinematics(vehicle_.transmission, 0.0, 1.0).stroke_slope, slow = balanced_.slowest;
+      if (UnknownIndices(vehicle_).pitching == false) {
+        orbits.attempt(turning(slow, slow), part);
+        if (orbits.empty()) orbits.attempt(turning(no_load_, no_load_), part);
+        return;
+      }
       orbits.attempt(pitched(slow, quasi_static_pitch(slope * slow)), part);
       orbits.attempt(pitched(slow, 0.0), part);
       orbits.attempt(pitched(no_load_, std::min(0.5 * pi, vehicle_.pitch.hinge.stop)),
@@ -103,7 +112,10 @@ class CrankSearch {
 
   /// At crank angle zero at a crank speed [rad/s], with the quasi-steady current of another.
   State turning(double speed, double earlier_speed) const {
-    return System::state_of({0.0, speed, algebraic_current(vehicle_, vehicle_.voltage, earlier_speed)});
+    const double current =
+        current_within(vehicle_.electronics, algebraic_current(vehicle_, vehicle_.voltage, earlier_speed));
+    if constexpr (System::general) return System::state_of({0.0, speed, current}, vehicle_);
+    else return System::state_of({0.0, speed, current});
   }
   /// turning() with wings pitched by `psi` [rad] against their velocity.
   State pitched(double speed, double psi) const

@@ -20,7 +20,9 @@ std::vector<CycleInstant> instants_of(const RecordedCycle<System>& recorded) {
       const Motion<double> m = system.motion(x, inside.y, step.signs);
       const double rate = system.template rates<true>(x, inside.y, step.signs).dq[time];
       double pitch_angle = absent;
-      if constexpr (System::on_hinges) pitch_angle = inside.y[System::pitch];
+      if constexpr (System::on_hinges) {
+        if (pitches(system.vehicle)) pitch_angle = system.local_pitch(inside.y);
+      }
       instants.push_back({waveform_row(system.vehicle, m, inside.dq[time], system.shaft_angle(x, inside.y),
                                        system.shaft_speed(inside.y), system.stroke_angle(m, inside.y), pitch_angle),
                           0.5 * step.h * detail::gauss_weights[k] * rate / period});

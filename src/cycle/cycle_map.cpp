@@ -15,6 +15,8 @@ extern template bool CycleGradient<PitchCrankSystem<double, 3>>::run();
 extern template bool CycleGradient<PitchCrankSystem<double, 4>>::run();
 extern template bool CycleGradient<PitchDirectSystem<double, 4>>::run();
 extern template bool CycleGradient<PitchDirectSystem<double, 5>>::run();
+extern template bool CycleGradient<AnyCrankSystem<double>>::run();
+extern template bool CycleGradient<AnyDirectSystem<double>>::run();
 
 namespace {
 
@@ -25,13 +27,31 @@ const CycleSignal armature_current{"current", "A", 0.0};
 const CycleSignal pitch_angle{"pitch_angle", "rad", 0.0};
 const CycleSignal pitch_velocity{"pitch_velocity", "rad/s", 0.0};
 
+const CycleSignal twist_angle{"twist_angle", "rad", 0.0};
+const CycleSignal twist_velocity{"twist_velocity", "rad/s", 0.0};
+const CycleSignal tip{"tip", "m", 0.0};
+const CycleSignal tip_velocity{"tip_velocity", "m/s", 0.0};
+
+/// States of the vehicle, and where they are in the system's.
+struct MapStates {
+  std::vector<CycleSignal> signals;
+  std::vector<std::size_t> places;
+
+  void add(const CycleSignal& signal, std::size_t place) {
+    signals.push_back(signal);
+    places.push_back(place);
+  }
+};
 template <class System>
-std::vector<CycleSignal> states_of() {
-  std::vector<CycleSignal> states;
-  if (System::turns) states = {crank_speed};
-  else states = {stroke_angle, flapping_velocity};
-  if (System::inductive) states.push_back(armature_current);
-  if (System::on_hinges) states.insert(states.end(), {pitch_angle, pitch_velocity});
+MapStates states_of(const Vehicle<double>& v) {
+  const UnknownIndices indices(v);
+  MapStates states;
+  if (!System::turns) states.add(stroke_angle, 0);
+  states.add(System::turns ? crank_speed : flapping_velocity, System::shaft);
+  if (indices.inductive) states.add(armature_current, System::current_state);
+  if (indices.compliant) states.add(tip, System::tip), states.add(tip_velocity, System::tip + 1);
+  if (indices.pitching) states.add(pitch_angle, System::pitch), states.add(pitch_velocity, System::pitch + 1);
+  if (indices.twisting) states.add(twist_angle, System::twist), states.add(twist_velocity, System::twist + 1);
   return states;
 }
 
@@ -62,7 +82,6 @@ CycleMap linearised(const RecordedCycle<System>& recorded, const Vehicle<double>
                     const Supply<double>& supply) {
   using Gradient = CycleGradient<System>;
   using W = typename Gradient::W;
-  constexpr int N = Gradient::N;
   constexpr int first_input = gradient_first_slot + Gradient::shift;
   Vehicle<GradientJet> seeded = cast<GradientJet>(vehicle);
   seeded.motor = cast<GradientJet>(recorded.system.vehicle.motor);  // as warm as the orbit's
@@ -71,8 +90,15 @@ CycleMap linearised(const RecordedCycle<System>& recorded, const Vehicle<double>
   Gradient cycle(recorded, seeded);
   cycle.run();  // whether the orbit itself can be differentiated does not matter to its map
 
-  map.states = states_of<System>();
-  for (int n = 0; n < N; ++n) map.states[std::size_t(n)].value = recorded.cycle.steps.front().y[std::size_t(n)];
+  const MapStates states = states_of<System>(vehicle);
+  const auto N = Eigen::Index(states.places.size());
+  map.states = states.signals;
+  for (std::size_t n = 0; n < states.places.size(); ++n) {
+    map.states[n].value = recorded.cycle.steps.front().y[states.places[n]];
+  }
+  const auto by_states = [&](const W& x, auto row) {
+    for (Eigen::Index n = 0; n < N; ++n) row[n] = x.v[Eigen::Index(states.places[std::size_t(n)])];
+  };
 
   const auto total = [&](Integral which) -> const W& { return cycle.totals()[std::size_t(which)]; };
   const W frequency = 1.0 / total(Integral::time);
@@ -94,12 +120,12 @@ CycleMap linearised(const RecordedCycle<System>& recorded, const Vehicle<double>
   const auto inputs = Eigen::Index(map.inputs.size()), rows = Eigen::Index(outputs.size());
   map.a.resize(N, N), map.b.resize(N, inputs), map.c.resize(rows, N), map.d.resize(rows, inputs);
   for (Eigen::Index row = 0; row < N; ++row) {
-    const W& end = cycle.end()[std::size_t(row)];
-    map.a.row(row) = end.v.template head<N>().transpose();
+    const W& end = cycle.end()[states.places[std::size_t(row)]];
+    by_states(end, map.a.row(row));
     map.b.row(row) = end.v.segment(first_input, inputs).transpose();
   }
   for (Eigen::Index row = 0; row < rows; ++row) {
-    map.c.row(row) = outputs[std::size_t(row)].v.template head<N>().transpose();
+    by_states(outputs[std::size_t(row)], map.c.row(row));
     map.d.row(row) = outputs[std::size_t(row)].v.segment(first_input, inputs).transpose();
   }
   return map;

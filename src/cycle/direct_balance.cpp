@@ -29,16 +29,23 @@ DirectBalance direct_balance(const Vehicle<double>& v) {
   const Motor<double>& m = v.motor;
   const double w = two_pi * v.drive_frequency, K = m.torque_constant, V = v.voltage;
   const Complex j(0.0, 1.0);
-  const Complex electrical = m.armature_resistance + j * w * m.armature_inductance;
+  const bool piezo = is_given(v.piezo);
+  const Complex electrical = piezo ? Complex(1.0) : m.armature_resistance + j * w * m.armature_inductance;
   const Complex from_motor = K * K / electrical;
+  // A piezo acts on the stroke about where it is not bent.
+  const double per_ratio = piezo ? 1.0 / v.piezo.transmission_ratio : 0.0;
+  const double own_stiffness = piezo ? v.piezo.stiffness * square(per_ratio) : 0.0;
+  const Complex drive = piezo ? Complex(force_per_volt_at(v.piezo, V) * V * per_ratio) : K * V / electrical;
   const double inertia = m.inertia + v.wing_count * v.wing_inertia;
-  const double reactance = w * inertia - v.wing_count * v.spring.stiffness / w;
+  const double reactance = w * inertia - (v.wing_count * v.spring.stiffness + own_stiffness) / w;
 
-  DirectBalance balance{K * V / std::abs(electrical), breakaway_torque(v), {}};
+  DirectBalance balance{std::abs(drive), breakaway_torque(v), {}};
   // |Z(Omega)| Omega = K V / |R_a + j w L_a|; the left side grows with Omega unless drag falls with speed.
   const auto impedance = [&](double speed) { return resistance(v, speed) / speed + j * reactance + from_motor; };
   const auto surplus = [&](double speed) { return balance.drive_torque - std::abs(impedance(speed)) * speed; };
-  const double fastest = balance.drive_torque / std::abs(from_motor + m.viscous_damping + j * reactance);
+  constexpr double limit = 1e6;  // [rad/s], of an undamped actuator at resonance
+  const double fastest =
+      std::min(limit, balance.drive_torque / std::abs(from_motor + m.viscous_damping + j * reactance));
   constexpr int speeds = 80;
   const double ratio = std::pow(1e-4, 1.0 / speeds);
   double high = 1.001 * fastest, at_high = surplus(high);
@@ -46,13 +53,21 @@ DirectBalance direct_balance(const Vehicle<double>& v) {
     const double low = high * ratio, at_low = surplus(low);
     if (at_low >= 0.0 && at_high < 0.0) {
       const double equal = bisect([&](double speed) { return surplus(speed) >= 0.0; }, low, high).before;
-      const Complex speed = K * V / (electrical * impedance(equal));
-      balance.responses.insert(balance.responses.begin(), {speed / (j * w), speed, (V - K * speed) / electrical});
+      const Complex speed = drive / impedance(equal);
+      const Complex current = piezo ? Complex(0.0) : (V - K * speed) / electrical;
+      balance.responses.insert(balance.responses.begin(), {speed / (j * w), speed, current});
     }
     high = low;
     at_high = at_low;
   }
   return balance;
+}
+
+double typical_current(const Vehicle<double>& v, const DirectBalance& balance) {
+  if (!is_given(v.piezo)) return balance.drive_torque / v.motor.torque_constant;
+  const double speed = balance.responses.empty() ? 0.0 : std::abs(balance.responses.back().speed);
+  return two_pi * v.drive_frequency * v.piezo.capacitance * v.voltage +
+         force_per_volt_at(v.piezo, v.voltage) * speed / v.piezo.transmission_ratio;
 }
 
 double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity) {
@@ -65,11 +80,11 @@ double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity, dou
   const double drag = 0.5 * vehicle.wings.air_density * normal_force_coefficient(vehicle.wings, p, 0.5 * pi);
   const double moment = (std::abs(p.mass_product) + p.air.rp) * w * stroke_velocity +
                         drag * centre_of_pressure(0.5 * pi) * p.moments.s22 * square(stroke_velocity);
-  const double rigidity =
-      std::max(std::abs(p.hinge.stiffness - square(w) * (p.pitch_inertia + p.air.pp)), 0.2 * p.hinge.stiffness);
+  const double stiffness = is_clamped(p.hinge) ? p.torsion.stiffness : p.hinge.stiffness;
+  const double rigidity = std::max(std::abs(stiffness - square(w) * (p.pitch_inertia + p.air.pp)), 0.2 * stiffness);
   // What a stiff hinge leaves of the pitch acts on nothing: its oscillations of that size need not be resolved.
   constexpr double least = 0.02;
-  return std::min({std::max(moment / rigidity, least), p.hinge.stop, 1.0}) + 1e-12;
+  return std::min({std::max(moment / rigidity, least), is_clamped(p.hinge) ? 1.0 : p.hinge.stop, 1.0}) + 1e-12;
 }
 
 }  // namespace wingbeat

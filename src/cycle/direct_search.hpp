@@ -28,13 +28,22 @@ class DirectSearch {
     const double inertia = vehicle_.motor.inertia + vehicle_.wing_count * vehicle_.wing_inertia;
     const double slip_speed = (balance_.drive_torque - balance_.breakaway_torque) / (inertia * w_);
     const double speed = balance_.responses.empty() ? slip_speed : std::abs(balance_.responses.back().speed);
-    Coordinates<double> typical{speed / w_, speed, balance_.drive_torque / vehicle_.motor.torque_constant};
+    Coordinates<double> typical{speed / w_, speed, typical_current(vehicle_, balance_)};
     if constexpr (System::on_hinges) {
-      typical.pitch_angle = typical_pitch(vehicle_, speed);
+      if (pitches(vehicle_)) typical.pitch_angle = typical_pitch(vehicle_, speed);
       typical.pitch_velocity = w_ * typical.pitch_angle;
       typical.angle += 1e-12, typical.speed += 1e-9, typical.current += 1e-12;
     }
-    return {vehicle_, System::state_of(typical)};
+    if constexpr (System::general) {
+      typical.twist_angle = typical.pitch_angle, typical.twist_velocity = typical.pitch_velocity;
+      typical.tip = typical.angle / vehicle_.piezo.transmission_ratio;
+      typical.tip_velocity = w_ * typical.tip;
+      State sizes = System::state_of(typical, vehicle_);
+      for (double& size : sizes) size = size > 0.0 ? size : 1.0;
+      return {vehicle_, sizes};
+    } else {
+      return {vehicle_, System::state_of(typical)};
+    }
   }
 
   void search(StableOrbits<System>& orbits) const {
@@ -43,9 +52,11 @@ class DirectSearch {
       // Where the pitching is lightly damped, the return map does not forget its start, and several responses may be
       // stable.
       orbits.attempt(State{}, part);
+      const bool hinged = UnknownIndices(vehicle_).pitching;
       for (const double psi : {0.25 * pi, 0.5 * pi}) {
-        if (responds) orbits.attempt(harmonic(psi), part);
+        if (responds && hinged) orbits.attempt(harmonic(psi), part);
       }
+      if (responds && !hinged) orbits.attempt(harmonic(0.0), part);
       if (orbits.empty() && orbits.unfinished()) orbits.attempt(*orbits.unfinished());
     } else {
       if (responds) orbits.attempt(harmonic(0.0));

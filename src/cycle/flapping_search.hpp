@@ -46,7 +46,7 @@ class StableOrbits {
   OrbitSearch<System>& operator[](std::size_t which) { return orbits_[which]; }
 
   const System& system() const { return system_; }
-  const solver::PeriodicSummary& last() const { return last_; }  ///< of the last search
+  const solver::PeriodicSummary& last() const { return last_; }  ///< of the last search, its iterates those of all
   int iterates() const { return iterates_; }                     ///< of all searches
   double imbalance() const { return imbalance_; }  ///< of a cycle refused for its energy balance; absent without
   /// Of an orbit found that is unstable; absent without.
@@ -55,8 +55,10 @@ class StableOrbits {
   /// A search that ended with its evaluations was here last, if there was one.
   const std::optional<State>& unfinished() const { return unfinished_; }
 
-  /// Nothing returns a shaft without springs to any angle: a multiplier of 1 there.
-  bool springs_return() const { return System::turns || system_.vehicle.spring.stiffness > 0.0; }
+  /// Nothing returns a shaft without springs, or a piezo's own, to any angle: a multiplier of 1 there.
+  bool springs_return() const {
+    return System::turns || system_.vehicle.spring.stiffness > 0.0 || is_given(system_.vehicle.piezo);
+  }
 
  private:
   template <class Search>
@@ -69,6 +71,7 @@ class StableOrbits {
     shared_.work.used += part.used;
     iterates_ += orbit.summary().iterates;
     last_ = orbit.summary();
+    last_.iterates = iterates_;
     if (last_.status == solver::PeriodicStatus::unbalanced) imbalance_ = orbit.imbalance();
     if (last_.status == solver::PeriodicStatus::out_of_work && orbit.started() && !unfinished_) {
       unfinished_ = orbit.start();
@@ -147,8 +150,8 @@ SteadyFlapping search_flapping(const Vehicle<double>& vehicle, const SteadyOptio
     }
     std::optional<std::size_t> which;
     if (outcome.settled) {
-      which = orbits.reached_at(System::state_of(
-          {outcome.stroke_angle, outcome.crank_speed, outcome.current, outcome.pitch_angle, outcome.pitch_velocity}));
+      if constexpr (System::general) which = orbits.reached_at(System::state_of(outcome.state, vehicle));
+      else which = orbits.reached_at(System::state_of(outcome.state));
     }
     result.summary = orbits.last();
     if (!which) {

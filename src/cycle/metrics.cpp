@@ -22,6 +22,7 @@ const std::array<MetricInfo, metric_count>& metric_table() {
       {"power_viscous_w", "W", "mean viscous loss of the motor"},
       {"power_motor_friction_w", "W", "mean loss in the motor's own constant friction"},
       {"power_gear_w", "W", "mean loss of the gearbox under load"},
+      {"power_electronics_w", "W", "mean loss of the electronics, of a piezo with its dielectric's"},
       {"power_loss_w", "W", "mean total loss"},
       {"power_residual_w", "W", "mean power the transmission formulation fails to conserve"},
       {"lift_mean_n", "N", "mean lift"},
@@ -86,12 +87,14 @@ const char* missing_key(Metric metric, const Design<double>& design) {
     case Metric::endurance: return has_battery(design.supply.type) ? nullptr : "supply.type = \"battery\"";
     case Metric::reynolds_number:
       return design.wing.planform.shape != PlanformShape::moments ? nullptr : "a wing.planform with a shape";
+    case Metric::power_electronics:
+      return design.electronics.efficiency || design.piezo.force_per_volt ? nullptr : electronics_key::efficiency.path;
     case Metric::power_hinge:
     case Metric::pitch_amplitude:
     case Metric::pitch_phase:
-    case Metric::angle_of_attack_max: return design.pitch.stiffness ? nullptr : pitch_key::stiffness.path;
+    case Metric::angle_of_attack_max: return follows_pitch_law(design) ? pitch_key::stiffness.path : nullptr;
     case Metric::lift_added_mass_share:
-      if (!design.pitch.stiffness) return pitch_key::stiffness.path;
+      if (follows_pitch_law(design)) return pitch_key::stiffness.path;
       return design.aerodynamics.added_mass ? nullptr : "aerodynamics.added_mass";
     default: return lacking_of_heat(metric, design);
   }
@@ -105,6 +108,7 @@ double error_scale(const Metrics<double>& metrics, Metric which) {
     case Metric::pitch_phase: return std::max(size, 90.0);
     case Metric::power_gear:
     case Metric::power_hinge:
+    case Metric::power_electronics:
     case Metric::power_residual: return std::max(size, std::abs(metrics[Metric::power_electrical]));
     case Metric::lift_mean: return std::max(size, 1e-3 * metrics[Metric::lift_peak]);
     case Metric::lift_added_mass_share:

@@ -18,7 +18,9 @@ WaveformRow row_inside(const Recorded& recorded, const solver::Step<decltype(Rec
   const Motion<double> m = system.motion(theta, result.y, step.signs);
   phase_rate = system.phase_rate(result.y);
   double pitch_angle = absent;
-  if constexpr (decltype(Recorded::system)::on_hinges) pitch_angle = result.y[system.pitch];
+  if constexpr (decltype(Recorded::system)::on_hinges) {
+    if (pitches(system.vehicle)) pitch_angle = system.local_pitch(result.y);
+  }
   return waveform_row(system.vehicle, m, start_time + result.dq[std::size_t(Integral::time)],
                       system.shaft_angle(theta, result.y), system.shaft_speed(result.y),
                       system.stroke_angle(m, result.y), pitch_angle);

@@ -30,10 +30,12 @@ OrbitGradient repeat_recorded(const SteadyFlapping& orbit, const RecordedCycle<S
   g.metrics = cycle_metrics(vehicle, cycle.integrals(), extremes,
                             GradientJet(orbit.metrics[Metric::floquet_multiplier_max]), {});
   if constexpr (CycleGradient<System>::pitching) {
-    g.metrics[Metric::power_hinge] = cycle.hinge_power();
-    g.metrics[Metric::lift_added_mass_share] =
-        added_mass_share(vehicle.pitch, cycle.chordwise_share(), GradientJet(1.0));
-    if (options.peaks) set_pitch_metrics(cycle.pitch_gradient(), g.metrics);
+    if (pitches(vehicle)) {
+      g.metrics[Metric::power_hinge] = cycle.hinge_power();
+      g.metrics[Metric::lift_added_mass_share] =
+          added_mass_share(vehicle.pitch, cycle.chordwise_share(), GradientJet(1.0));
+      if (options.peaks) set_pitch_metrics(cycle.pitch_gradient(), g.metrics);
+    }
   }
   const GradientJet bench = voltage_varies ? given.bench_torque_constant : GradientJet(absent);
   g.metrics[Metric::power_motor_reference] =

@@ -57,8 +57,8 @@ void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& 
   }
   result.status = FlappingStatus::flapping;
   result.metrics = result.simulated->metrics;
-  result.crank_speed = outcome.crank_speed;
-  result.current = outcome.current;
+  result.crank_speed = outcome.state.speed;
+  result.current = outcome.state.current;
   result.evidence.kind = Evidence::simulated_cycle;
   result.evidence.frequency = result.metrics[Metric::frequency];
   result.evidence.change = result.simulated->error_estimate;
@@ -68,6 +68,10 @@ void detail::fill_simulated(const StartUpOutcome& outcome, const SteadyOptions& 
 SteadyFlapping detail::find_flapping_among(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                            const StartUp& start_up, SharedSearch& shared) {
   const bool rotates = drive_of(vehicle).rotates;
+  if (is_of_further_kind(vehicle)) {
+    return rotates ? find_any_crank_flapping(vehicle, options, start_up, shared)
+                   : find_any_direct_flapping(vehicle, options, start_up, shared);
+  }
   if (pitches(vehicle)) {
     return rotates ? find_pitching_crank_flapping(vehicle, options, start_up, shared)
                    : find_pitching_flapping(vehicle, options, start_up, shared);

@@ -179,10 +179,24 @@ std::optional<LoadsUnderWave> loads_of_wave(const RecordedCycle<System>& recorde
   }
 }
 
+/// visit() with a cycle of which loads on a body are known.
+template <class Result, class Use>
+Result visit_for_loads(const CycleRecord& orbit, const Use& use) {
+  return visit(orbit, [&](const auto& recorded) -> Result {
+    if constexpr (std::remove_cvref_t<decltype(recorded.system)>::general) {
+      throw ParameterError("vehicle",
+                           "loads on a body are not known of a piezo, of wings that twist and of electronics "
+                           "that limit the current");
+    } else {
+      return use(recorded);
+    }
+  });
+}
+
 }  // namespace
 
 WingLoads wing_loads(const CycleRecord& orbit) {
-  return visit(orbit, [](const auto& recorded) {
+  return visit_for_loads<WingLoads>(orbit, [](const auto& recorded) {
     using Loaded = LoadsSystem<std::remove_cvref_t<decltype(recorded.system)>>;
     typename Loaded::Quadrature totals{};
     const solver::Iterate<Loaded> cycle = detail::with_loads(recorded.cycle);
@@ -192,12 +206,13 @@ WingLoads wing_loads(const CycleRecord& orbit) {
 }
 
 WingLoadSlopes wing_load_slopes(const CycleRecord& orbit) {
-  return visit(orbit, [](const auto& recorded) { return slopes_of(recorded); });
+  return visit_for_loads<WingLoadSlopes>(orbit, [](const auto& recorded) { return slopes_of(recorded); });
 }
 
 std::optional<LoadsUnderWave> loads_under_wave(const CycleRecord& orbit, const DriveWave<double>& wave,
                                                const std::vector<double>& near) {
-  return visit(orbit, [&](const auto& recorded) { return loads_of_wave(recorded, wave, near); });
+  return visit_for_loads<std::optional<LoadsUnderWave>>(
+      orbit, [&](const auto& recorded) { return loads_of_wave(recorded, wave, near); });
 }
 
 }  // namespace wingbeat

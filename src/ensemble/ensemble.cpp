@@ -40,7 +40,8 @@ PackSolver solver_for(InstructionSet isa) {
 
 /// Whether the batched solver knows all of a vehicle.
 bool suits_packs(const Vehicle<double>& v) {
-  if (has_gear_loss(v.motor) || pitches(v) || v.load_torque != 0.0) return false;
+  if (has_gear_loss(v.motor) || pitches(v) || is_of_further_kind(v)) return false;
+  if (v.load_torque != 0.0 || v.voltage_offset != 0.0 || v.electronics.efficiency != 1.0) return false;
   if (v.transmission.type == TransmissionType::slider_crank) return lanes_know_coefficients(v);
   // Where constant friction holds a shaft that swings, the equations jump; where coefficients have kinks, their slopes
   // jump.

@@ -12,26 +12,40 @@ EquationsOfMotion::EquationsOfMotion(const Design<double>& design, Condition con
   validate(design);
   vehicle_ = std::make_shared<const Vehicle<double>>(switched_on(resolve(design, condition)));
   inductive_ = has_current_state(*vehicle_);
-  pitching_ = pitches(*vehicle_);
+  state_count_ = UnknownIndices(*vehicle_).count;
 }
 
 void EquationsOfMotion::rates(double time, const double* state, double* derivatives,
                               std::optional<double> voltage) const {
   const Vehicle<double>& vehicle = *vehicle_;
   if (!voltage) {
-    voltage = direct_ ? vehicle.voltage * std::sin(two_pi * vehicle.drive_frequency * time) : voltage_at(supply_, time);
+    voltage = direct_ ? vehicle.voltage_offset + vehicle.voltage * std::sin(two_pi * vehicle.drive_frequency * time)
+                      : voltage_at(supply_, time);
   }
   const UnknownIndices indices(vehicle);
   Mode<double> mode;
   mode.direction = sign_of(state[1]);
   PitchMotion<double> m;
-  mode_at(vehicle, instant_at(vehicle, indices.coordinates(state), *voltage, mode), mode, &m);
+  mode.turn = sign_of(indices.pitching ? state[indices.pitch + 1] : 0.0);
+  const Coordinates<double> c = indices.coordinates(state);
+  if (!inductive_) mode = with_bridge(vehicle, *voltage, c.speed, mode);
+  const FullState<double> instant = instant_at(vehicle, c, {*voltage}, mode);
+  mode_at(vehicle, instant, mode, &m);
   derivatives[0] = state[1];
   derivatives[1] = m.crank_acceleration;
   if (inductive_) derivatives[indices.current] = m.inductive_voltage / vehicle.motor.armature_inductance;
-  if (!pitching_) return;
-  derivatives[indices.pitch] = state[indices.pitch + 1];
-  derivatives[indices.pitch + 1] = m.pitch_acceleration;
+  if (indices.compliant) {
+    derivatives[indices.tip] = state[indices.tip + 1];
+    derivatives[indices.tip + 1] = instant.tip_acceleration;
+  }
+  if (indices.pitching) {
+    derivatives[indices.pitch] = state[indices.pitch + 1];
+    derivatives[indices.pitch + 1] = m.pitch_acceleration;
+  }
+  if (indices.twisting) {
+    derivatives[indices.twist] = state[indices.twist + 1];
+    derivatives[indices.twist + 1] = m.twist_acceleration;
+  }
 }
 
 }  // namespace wingbeat

@@ -74,10 +74,17 @@ class Reader {
     d.pitch.rotational_lift = rotation.lift;
     d.pitch.damping_coefficient = rotation.damping;
     attempt([&] { read_flag("pitch.rotational_lift", d.pitch.rotational_lift); });
+    attempt([&] { read_flag("electronics.regeneration", d.electronics.regenerates); });
+    for (const auto& [section, key] :
+         {std::pair("pitch", pitch_key::stiffness), std::pair("wing.torsion", torsion_key::stiffness),
+          std::pair("piezo", piezo_key::force_per_volt), std::pair("electronics", electronics_key::efficiency)}) {
+      attempt([&, s = section, k = key] {
+        if (document_.has_section(s) && !document_.find(k.path)) missing(k.path, quantity_example(k.unit));
+      });
+    }
     attempt([&] {
-      if (document_.has_section("pitch") && !document_.find(pitch_key::stiffness.path)) {
-        missing(pitch_key::stiffness.path, quantity_example(pitch_key::stiffness.unit));
-      }
+      if (!document_.has_section("piezo") || !document_.has_section("motor")) return;
+      document_.locate("motor").refuse("motor", "has no place beside [piezo], which swings the wings without a motor");
     });
     read_numbers(d);
     attempt([&] {
@@ -128,6 +135,7 @@ class Reader {
     for (const auto& [section, holds] : required) {
       if (document_.has_section(section)) continue;
       absent_.push_back(section);
+      if (section == "motor" && document_.has_section("piezo")) continue;
       if (known_to_be_wrong(section)) continue;
       missing_.attempt([&, s = section, h = holds] {
         document_.locate(s).refuse(std::string(s), fmt::format("missing section [{}]: {}", s, h));
@@ -248,7 +256,13 @@ class Reader {
   bool is_required(const ParameterText& key) const {
     if (key.fallback != "required" || key.has_alternative()) return false;
     // read_coefficients() requires the numbers of a section that is given.
-    return !is_section(key.required_unless) && !document_.find(key.required_unless);
+    if (is_section(key.required_unless)) return false;
+    for (std::string_view rest = key.required_unless; !rest.empty();) {
+      const std::size_t end = std::min(rest.find('|'), rest.size());
+      if (document_.find(rest.substr(0, end))) return false;
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    return true;
   }
 
   /// Each at its own line; validate() sees to what needs another key.

@@ -207,6 +207,13 @@ std::string quantity_example(std::string_view unit) {
       {"K/W", "a thermal resistance such as \"20 K/W\""},
       {"1/K", "a temperature coefficient such as \"0.0039 1/K\""},
       {"m2/s", "a kinematic viscosity such as \"1.5e-5 m2/s\""},
+      {"N/V", "a force per volt such as \"0.4 mN/V\""},
+      {"1/V", "a growth per volt such as \"1e-3 1/V\""},
+      {"N/m", "a stiffness such as \"240 N/m\""},
+      {"N s/m", "a damping such as \"0.02 N s/m\""},
+      {"F", "a capacitance such as \"10 nF\""},
+      {"rad/m", "an angle over a length such as \"2600 rad/m\""},
+      {"rad/m3", "an angle over a volume such as \"4e9 rad/m3\""},
       {"m4", "a chord moment such as \"2.5e-6 m4\""},
       {"m5", "a chord moment such as \"1e-7 m5\""}};
   for (const auto& [known, example] : examples) {

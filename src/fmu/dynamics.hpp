@@ -25,7 +25,7 @@ Dynamics<S> evaluate(const Vehicle<S>& v, const Mode<S>& standing, const S* y, c
   const UnknownIndices indices(v);
   Dynamics<S> all;
   all.moving = indices.coordinates(y);
-  const MotionState<S> instant = instant_at(v, all.moving, v_s, standing);
+  const FullState<S> instant = instant_at(v, all.moving, {v_s}, standing);
   const Mode<S> mode = mode_at(v, instant, standing, &all.motion);
   all.moving.speed = instant.omega;
   all.moving.pitch_velocity = instant.pitch_velocity;

@@ -8,6 +8,7 @@
 #include "fmu/package.hpp"
 #include "fmu/variables.hpp"
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/vehicle/dynamics.hpp"
 
 namespace wingbeat::fmu {
 namespace {
@@ -73,6 +74,17 @@ std::string build_description_of(const FmuOptions& options) {
 }  // namespace
 
 FmuContent fmu_content(const Design<double>& design, const FmuOptions& options) {
+  const Vehicle<double> vehicle = resolve(design);
+  if (is_of_further_kind(vehicle) || vehicle.electronics.efficiency != 1.0) {
+    const char* section = design.piezo.force_per_volt     ? "piezo"
+                          : design.electronics.efficiency ? "electronics"
+                                                          : "wing.torsion";
+    throw ParameterError(section, "an FMU does not know it yet: `wingbeat run` and Simulation do");
+  }
+  if (has_friction(vehicle.pitch.hinge) || vehicle.voltage_offset != 0.0) {
+    throw ParameterError(has_friction(vehicle.pitch.hinge) ? "pitch.friction" : "supply.offset",
+                         "an FMU does not know it yet: `wingbeat run` and Simulation do");
+  }
   FmuContent content;
   content.resource = resource_of(design);
   content.description = model_description(design, token_of(content.resource), options);

@@ -6,6 +6,7 @@
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/parts/blade_element.hpp"
+#include "wingbeat/parts/piezo.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/planform.hpp"
 
@@ -194,6 +195,20 @@ CoefficientTable::Cubic CoefficientTable::lift_piece(double alpha) const {
 CoefficientTable::Cubic CoefficientTable::drag_piece(double alpha) const {
   const CoefficientLookup::Row& r = rows_[std::size_t(lookup().knots_up_to(alpha))];
   return {r.x0, r.drag[0], r.drag[1], r.drag[2], r.drag[3]};
+}
+
+void validate(const Piezo<double>& p) {
+  require(piezo_key::force_per_volt, p.force_per_volt);
+  require(piezo_key::voltage_factor, p.voltage_factor);
+  require(piezo_key::stiffness, p.stiffness);
+  require(piezo_key::damping, p.damping);
+  require(piezo_key::mass, p.mass);
+  require(piezo_key::capacitance, p.capacitance);
+  require(piezo_key::loss_tangent, p.loss_tangent);
+  require(piezo_key::recovered_share, p.recovered_share);
+  require(piezo_key::transmission_ratio, p.transmission_ratio);
+  require(piezo_key::transmission_cubic, p.transmission_cubic);
+  if (is_compliant(p)) require(piezo_key::series_stiffness, p.series_stiffness);
 }
 
 }  // namespace wingbeat

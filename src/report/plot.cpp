@@ -188,6 +188,9 @@ void plot_powers(std::span<const PowerBar> bars, const std::string& title, PlotF
   if (motor_friction) {
     parts.insert(parts.begin() + 2, {"motor friction", &EnergyAudit::motor_friction, style::motor_friction, false});
   }
+  if (lost_in(&EnergyAudit::electronics)) {
+    parts.insert(parts.begin(), {"electronics", &EnergyAudit::electronics, style::electronics, false});
+  }
   std::vector<KeyEntry> named;
   for (const Part& part : parts) named.push_back(fill_key(part.name, part.fill));
   const Key key(std::move(named), 0.94 * format.width);

@@ -148,6 +148,9 @@ constexpr MetricDefinition metric_definitions[] = {
      R"(mean of $T_\mathrm{c,m} \lvert\omega\rvert$, 0 unless `motor.friction_torque` is given)"},
     {Metric::power_gear, R"($P_\mathrm{gear}$)",
      R"(mean of $(1 - e)\, T_\mathrm{g} \omega$, 0 unless `motor.gear_efficiency` is below 1)"},
+    {Metric::power_electronics, R"($P_\mathrm{esc}$)",
+     R"($(1/\eta_\mathrm{esc} - 1)\, \overline{v i}$ of a brushless motor; of a piezo what its dielectric and the )"
+     "electronics lose of the energy that its capacitance gives back"},
     {Metric::power_loss, R"($P_\mathrm{loss}$)", R"($P_\mathrm{e} - P_\mathrm{aero}$ (eq 20))"},
     {Metric::power_residual, R"($P_\mathrm{residual}$)",
      R"(mean of $F (h \omega - g \dot\beta)$: 0 with `virtual-work`, a property of `rod-force`)"},
@@ -176,7 +179,8 @@ constexpr MetricDefinition metric_definitions[] = {
     {Metric::added_mass_inertia_ratio, R"($J_\mathrm{a} / (N_\mathrm{w} J_\mathrm{w})$)",
      "`aerodynamics.added_mass = true`"},
     {Metric::power_hinge, R"($P_\mathrm{hinge}$)",
-     R"(mean of $c_\psi \dot\psi^2$ of all wings and what the stops take in impacts; wings on pitch hinges)"},
+     R"(mean of $c_\psi \dot\psi^2 + T_\psi |\dot\psi| + c_\tau \dot\tau^2$ of all wings and what the stops take in )"
+     "impacts; wings that pitch on hinges or twist"},
     {Metric::pitch_amplitude, R"($\tfrac12 (\psi_\mathrm{max} - \psi_\mathrm{min})$)", ""},
     {Metric::pitch_phase, R"($\varphi_\psi$)",
      R"(by how much the first harmonic of $\psi$ is ahead of that of $-\dot\beta$: 0 for symmetric flips; )"

@@ -65,13 +65,16 @@ void power_group(Table& table, const Metrics<double>& m) {
   const auto power = [&](const char* name, double value, const char* remark) {
     table.line(name, readable(value, "W"), fmt::format("{}   {}", share(value), remark));
   };
-  power("electrical input", a.electrical, "v i");
+  const bool electronics = std::isfinite(m[Metric::power_electronics]);
+  power("electrical input", a.electrical, electronics ? "of the electronics" : "v i");
+  if (electronics) power("  electronics", a.electronics, "(1/eta - 1) v i; of a piezo with its dielectric");
   power("  copper loss", a.copper, "R_a i^2");
   power("  viscous loss of the motor", a.viscous, "b omega^2");
   if (a.motor_friction != 0.0) power("  friction of the motor", a.motor_friction, "T_c,m omega");
   if (a.gear != 0.0) power("  gearbox", a.gear, "(1 - e) T_g omega");
   power(a.motor_friction != 0.0 ? "  friction of the mechanism" : "  friction", a.friction, "T_f omega");
-  if (std::isfinite(m[Metric::power_hinge])) power("  pitch hinges", a.hinge, "c_psi psi'^2, impacts on stops");
+  if (std::isfinite(m[Metric::power_hinge]))
+    power("  pitch hinges", a.hinge, "damping, friction, torsion, impacts on stops");
   const bool hinged = std::isfinite(m[Metric::power_hinge]);
   power("  aerodynamic", a.aerodynamic, hinged ? "M_aero beta' + M_pitch psi'" : "M_aero beta'");
   power("  formulation residual", a.residual, "F (h omega - g beta')");

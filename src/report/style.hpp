@@ -26,6 +26,7 @@ inline constexpr const char* viscous = "#f0e442";
 inline constexpr const char* motor_friction = "#882255";  // of P. Tol's muted scheme
 inline constexpr const char* gearbox = "#009e73";
 inline constexpr const char* hinges = "#8c6d46";
+inline constexpr const char* electronics = "#5f6b7a";
 inline constexpr const char* friction = "#cc79a7";
 inline constexpr const char* residual = "#bbbbbb";
 inline constexpr const char* aerodynamic = "#56b4e9";

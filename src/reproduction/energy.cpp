@@ -13,10 +13,11 @@ namespace wingbeat {
 
 EnergyFlow energy_flow(const EnergyAudit& a) {
   EnergyFlow flow{a.electrical,
-                  a.electrical - a.copper - a.viscous - a.motor_friction - a.gear,
+                  a.electrical - a.electronics - a.copper - a.viscous - a.motor_friction - a.gear,
                   {{"copper", a.copper}, {"motor viscous", a.viscous}},
                   {{"friction", a.friction}, {"form. residual", a.residual}},
                   a.aerodynamic};
+  if (a.electronics != 0.0) flow.motor.push_back({"electronics", a.electronics});
   if (a.motor_friction != 0.0) flow.motor.push_back({"motor friction", a.motor_friction});
   if (a.gear != 0.0) flow.motor.push_back({"gearbox", a.gear});
   return flow;

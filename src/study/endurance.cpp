@@ -130,7 +130,8 @@ class Flight {
   };
   Load load_of(const Metrics<double>& m, double voltage) const {
     const double R_i = source_resistance(battery_);
-    if (!bridged_) return {m[Metric::voltage], m[Metric::current_mean], R_i * square(m[Metric::current_rms])};
+    const bool passed_on = bridged_ || std::isfinite(m[Metric::power_electronics]);
+    if (!passed_on) return {m[Metric::voltage], m[Metric::current_mean], R_i * square(m[Metric::current_rms])};
     // The smaller of the two currents that give the power.
     const double P_e = m[Metric::power_electrical],
                  current = 2.0 * P_e / (voltage + std::sqrt(square(voltage) - 4.0 * R_i * P_e));

@@ -97,7 +97,10 @@ class FlightGradient {
     for (std::size_t j = 0; j < weights.size(); ++j) {
       vehicle.voltage = nodes.voltages()[j];
       const SteadyFlapping orbit = find_steady_flapping(vehicle, steady_, {});
-      if (orbit.status != FlappingStatus::flapping) return std::vector<double>(parameters_.size(), absent);
+      const bool passed_on = std::isfinite(orbit.metrics[Metric::power_electronics]);  // not the motor's current
+      if (orbit.status != FlappingStatus::flapping || passed_on) {
+        return std::vector<double>(parameters_.size(), absent);
+      }
       const MetricGradients g = metric_gradients(design_, condition_, orbit, parameters_, {Held::voltage, false, {}});
       const double i = orbit.metrics[Metric::current_mean];
       for (std::size_t k = 0; k < parameters_.size(); ++k) {

@@ -20,7 +20,7 @@ Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, dou
   Mode<double> mode;
   mode.direction = sign_of(omega);
   PitchMotion<double> m;
-  mode_at(vehicle, instant_at(vehicle, {crank_angle, omega, i}, v, mode), mode, &m);
+  mode_at(vehicle, instant_at(vehicle, {crank_angle, omega, i}, {v}, mode), mode, &m);
   return m;
 }
 
@@ -137,7 +137,7 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
     TransientOptions transient;
     transient.tolerance = std::max(options.tolerance, transient_tightest);
     transient.cycle_rows = options.waveform_rows;
-    if (!drive_of(vehicle).rotates || pitches(vehicle)) {
+    if (!drive_of(vehicle).rotates || pitches(vehicle) || is_of_further_kind(vehicle)) {
       result.cycle = simulate_start_up(warm, transient).cycle;
     } else {
       last_cycle(warm, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows, result);
@@ -173,7 +173,7 @@ void run_transient(Vehicle<double> vehicle, const RunOptions& options, RunResult
   transient.reporting = reporting_of(result.design);
   const Drive drive = drive_of(vehicle);
   if (!drive.alternating) transient.supply = result.design.supply;
-  const bool keeps_cycle = !drive.rotates || pitches(vehicle);
+  const bool keeps_cycle = !drive.rotates || pitches(vehicle) || is_of_further_kind(vehicle);
   transient.cycle_rows = keeps_cycle && options.waveform_rows > 1 ? options.waveform_rows : 0;
   result.start_up =
       heats_up(vehicle.thermal) ? simulate_warm(vehicle, transient) : simulate_start_up(vehicle, transient);

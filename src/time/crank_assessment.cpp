@@ -24,7 +24,8 @@ bool CrankStartUp::captured() {
   if (model_.supply.type != SupplyType::constant || std::abs(now_.moving.speed) > 0.02 * model_.speed_scale)
     return false;
   const Motor<double>& m = model_.vehicle.motor;
-  const double final_current = now_.switched_voltage / circuit_resistance(model_.vehicle);
+  const double final_current =
+      current_within(model_.vehicle.electronics, now_.switched_voltage / circuit_resistance(model_.vehicle));
   if (model_.wingless || model_.vehicle.spring.stiffness == 0.0) {
     if (final_current > 0.0 || std::abs(now_.moving.speed) > 1e-7 * model_.speed_scale) return false;
     rest(now_.moving.angle, false);
@@ -102,7 +103,7 @@ void CrankStartUp::flap() {
                         .cycles = int(crossings_.size()),
                         .repeats_after = int(turns_),
                         .extrapolated = jumped_};
-    if (model_.indices.pitching && options_.metrics) pitching_.add_to(result_.evidence, model_);
+    if (pitches(model_.vehicle) && options_.metrics) pitching_.add_to(result_.evidence, model_);
     return;
   }
   result_.settled = result_.cycle_scatter < cycle_spread_settled;
@@ -116,7 +117,8 @@ void CrankStartUp::flap() {
 /// The motor's against the resistance, on a switched supply of its mean voltage [N m].
 double CrankStartUp::stall_torque() const {
   const double v = model_.supply.type == SupplyType::pwm ? model_.vehicle.voltage : model_.supply.voltage;
-  return model_.vehicle.motor.torque_constant * v / circuit_resistance(model_.vehicle);
+  const double i = current_within(model_.vehicle.electronics, v / circuit_resistance(model_.vehicle));
+  return model_.vehicle.motor.torque_constant * i;
 }
 
 /// Whether the motor is too weak for the constant friction, with the decision: that comes before all that else becomes

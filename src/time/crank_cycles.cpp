@@ -28,8 +28,7 @@ bool cancels(const Metrics<double>& m) {
 /// A forward crossing of theta = 2 pi n. True if the integrator must start afresh.
 bool CrankStartUp::cycle_done() {
   const double before = crossings_.empty() ? 0.0 : crossings_.back().time + crossings_.back().skipped;
-  crossings_.push_back({now_.t, now_.moving.speed, now_.moving.current, now_.t - before, 0.0, now_.moving.pitch_angle,
-                        now_.moving.pitch_velocity});
+  crossings_.push_back({now_.t, now_.moving, now_.t - before, 0.0});
   event(Kind::revolution);
   model_.next_cycle += two_pi;
   const bool restart = model_.supply.type == SupplyType::constant ? cycle_done_constant() : cycle_done_averaging();
@@ -146,11 +145,11 @@ void CrankStartUp::cycle_measured(double rate) {
       std::max(tightest_, closed || !balances ? relative_tolerance_ / 10.0
                                               : std::min(relative_tolerance_, 3e-3 * tolerance / gain));
   if (!closed && contraction_ > 0.0 && cycles_since_jump_ >= 2) {
-    const Crossing& last = crossings_[crossings_.size() - 2];
     const double share = contraction_ / (1.0 - contraction_);
-    move_state({share * (now_.moving.speed - last.omega), share * (now_.moving.current - last.current),
-                share * (now_.moving.pitch_angle - last.psi),
-                share * (now_.moving.pitch_velocity - last.pitch_velocity)});
+    Scaled by = scaled(now_.moving);
+    const Scaled last = scaled(crossings_[crossings_.size() - 2].state);
+    for (std::size_t k = 0; k < by.size(); ++k) by[k] = share * (by[k] - last[k]);
+    move_state(by);
     cycles_since_jump_ = 0;
     change_before_jump_ = change_;
   }
@@ -162,51 +161,59 @@ bool CrankStartUp::repeats_after(std::size_t cycles) const {
   const std::size_t n = crossings_.size();
   if (n < 4 * cycles) return false;
   for (std::size_t k = n - 2 * cycles; k < n; ++k) {
-    const Crossing &a = crossings_[k - cycles], &b = crossings_[k], &next = crossings_[k - cycles + 1];
-    double off =
-        std::abs(a.omega - b.omega) / model_.speed_scale + std::abs(a.current - b.current) / model_.current_scale;
-    double within =
-        std::abs(a.omega - next.omega) / model_.speed_scale + std::abs(a.current - next.current) / model_.current_scale;
-    if (model_.indices.pitching) {
-      off += std::abs(a.psi - b.psi) / model_.pitch_scale +
-             std::abs(a.pitch_velocity - b.pitch_velocity) / model_.pitch_velocity_scale;
-      within += std::abs(a.psi - next.psi) / model_.pitch_scale +
-                std::abs(a.pitch_velocity - next.pitch_velocity) / model_.pitch_velocity_scale;
+    const Scaled a = scaled(crossings_[k - cycles].state), b = scaled(crossings_[k].state);
+    const Scaled next = scaled(crossings_[k - cycles + 1].state);
+    double off = 0.0, within = 0.0;
+    for (std::size_t n_state = 0; n_state < a.size(); ++n_state) {
+      off += std::abs(a[n_state] - b[n_state]);
+      within += std::abs(a[n_state] - next[n_state]);
     }
     if (!(off < 1e-2 * within) || within < 1e-5) return false;
   }
   return true;
 }
 
-/// Largest relative change of the state since a crossing.
-double CrankStartUp::state_change(const Crossing& before) const {
-  double change = std::max(
-      std::abs(now_.moving.speed - before.omega) / (std::abs(now_.moving.speed) + 1e-6 * model_.speed_scale),
-      std::abs(now_.moving.current - before.current) / (std::abs(now_.moving.current) + 0.01 * model_.current_scale));
-  if (!model_.indices.pitching) return change;
-  const auto of_pitch = [](double now, double then, double scale) {
-    return std::abs(now - then) / (std::abs(now) + 0.1 * scale);
-  };
-  change = std::max(change, of_pitch(now_.moving.pitch_angle, before.psi, model_.pitch_scale));
-  return std::max(change, of_pitch(now_.moving.pitch_velocity, before.pitch_velocity, model_.pitch_velocity_scale));
+CrankStartUp::Scaled CrankStartUp::scaled(const Coordinates<double>& c) const {
+  Scaled x{c.speed / model_.speed_scale, c.current / model_.current_scale};
+  if (model_.indices.pitching) {
+    x[2] = c.pitch_angle / model_.pitch_scale, x[3] = c.pitch_velocity / model_.pitch_velocity_scale;
+  }
+  if (model_.indices.twisting) {
+    x[4] = c.twist_angle / model_.pitch_scale, x[5] = c.twist_velocity / model_.pitch_velocity_scale;
+  }
+  return x;
 }
 
-/// Moves the state, at a crossing, by omega, i, psi and psi'. Wings that a stop holds stay there.
-void CrankStartUp::move_state(const std::array<double, 4>& by) {
-  now_.moving.speed += by[0];
-  now_.moving.current = model_.indices.inductive
-                            ? now_.moving.current + by[1]
-                            : algebraic_current(model_.vehicle, model_.voltage(now_.t), now_.moving.speed);
+/// Largest relative change of the state since a crossing.
+double CrankStartUp::state_change(const Crossing& before) const {
+  constexpr Scaled beside{1e-6, 0.01, 0.1, 0.1, 0.1, 0.1};
+  const Scaled x = scaled(now_.moving), then = scaled(before.state);
+  double change = 0.0;
+  for (std::size_t k = 0; k < x.size(); ++k) {
+    change = std::max(change, std::abs(x[k] - then[k]) / (std::abs(x[k]) + beside[k]));
+  }
+  return change;
+}
+
+/// Moves the state, at a crossing, by so many of its typical sizes. Wings that are held, and a current that electronics
+/// hold, stay there.
+void CrankStartUp::move_state(const Scaled& by) {
+  Coordinates<double>& c = now_.moving;
+  c.speed += by[0] * model_.speed_scale;
+  if (!model_.indices.inductive) {
+    c.current = model_.current_now();
+  } else if (!now_.blocked && !now_.limited) {
+    c.current += by[1] * model_.current_scale;
+  }
   if (model_.indices.pitching && !now_.held) {
     const double stop = model_.vehicle.pitch.hinge.stop;
-    now_.moving.pitch_angle = std::clamp(now_.moving.pitch_angle + by[2], -stop, stop);
-    now_.moving.pitch_velocity += by[3];
+    c.pitch_angle = std::clamp(c.pitch_angle + by[2] * model_.pitch_scale, -stop, stop);
+    c.pitch_velocity += by[3] * model_.pitch_velocity_scale;
   }
-  Crossing& here = crossings_.back();
-  here.omega = now_.moving.speed;
-  here.current = now_.moving.current;
-  here.psi = now_.moving.pitch_angle;
-  here.pitch_velocity = now_.moving.pitch_velocity;
+  if (model_.indices.twisting) {
+    c.twist_angle += by[4] * model_.pitch_scale, c.twist_velocity += by[5] * model_.pitch_velocity_scale;
+  }
+  crossings_.back().state = c;
 }
 
 /// Where cycles converge slowly along one direction, skips ahead. Blocks of cycles of one size show by how much each
@@ -227,30 +234,30 @@ bool CrankStartUp::jump_ahead(double rate) {
 
 bool CrankStartUp::jump_by_blocks(std::size_t n, std::size_t block) {
   const auto difference = [&](std::size_t back) {
-    const Crossing& a = crossings_[n - 1 - (back + 1) * block];
-    const Crossing& b = crossings_[n - 1 - back * block];
-    std::array<double, 4> d{(b.omega - a.omega) / model_.speed_scale,
-                            model_.indices.inductive ? (b.current - a.current) / model_.current_scale : 0.0};
-    if (model_.indices.pitching) {
-      d[2] = (b.psi - a.psi) / model_.pitch_scale;
-      d[3] = (b.pitch_velocity - a.pitch_velocity) / model_.pitch_velocity_scale;
-    }
+    Scaled d = scaled(crossings_[n - 1 - back * block].state);
+    const Scaled before = scaled(crossings_[n - 1 - (back + 1) * block].state);
+    for (std::size_t k = 0; k < d.size(); ++k) d[k] -= before[k];
+    if (!model_.indices.inductive) d[1] = 0.0;
     return d;
   };
+  const auto product = [](const Scaled& a, const Scaled& b) {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < a.size(); ++k) sum += a[k] * b[k];
+    return sum;
+  };
   const auto ratio = [&](std::size_t back) {
-    const auto a = difference(back + 1), b = difference(back);
-    return (a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + a[3] * b[3]) /
-           (a[0] * a[0] + a[1] * a[1] + a[2] * a[2] + a[3] * a[3]);
+    const Scaled a = difference(back + 1);
+    return product(a, difference(back)) / product(a, a);
   };
   const double newer = ratio(0), older = ratio(1);
   if (!(newer > 0.0 && newer < 0.9999)) return false;
   const double gain = newer / (1.0 - newer), per_cycle = std::pow(newer, 1.0 / double(block));
-  const auto [speed, current, pitch, pitch_velocity] = difference(0);
-  const double to_come = std::max({std::abs(speed) * model_.speed_scale / std::abs(now_.moving.speed),
-                                   std::abs(current) * model_.current_scale /
-                                       (std::abs(now_.moving.current) + 0.01 * model_.current_scale),
-                                   std::abs(pitch), std::abs(pitch_velocity)}) *
-                         gain;
+  Scaled moved = difference(0);
+  double to_come = std::max(
+      std::abs(moved[0]) * model_.speed_scale / std::abs(now_.moving.speed),
+      std::abs(moved[1]) * model_.current_scale / (std::abs(now_.moving.current) + 0.01 * model_.current_scale));
+  for (std::size_t k = 2; k < moved.size(); ++k) to_come = std::max(to_come, std::abs(moved[k]));
+  to_come *= gain;
   const bool to_the_limit = to_come <= 1e-3;
   if (std::abs(newer - older) > (to_the_limit ? 0.05 : 0.2) * (1.0 - newer)) return false;
   double share = 1.0, skipped = 0.0;
@@ -260,8 +267,8 @@ bool CrankStartUp::jump_by_blocks(std::size_t n, std::size_t block) {
     skipped = std::log1p(-share) / std::log(per_cycle);
     if (skipped < double(2 * block)) return false;
   }
-  move_state({share * gain * speed * model_.speed_scale, share * gain * current * model_.current_scale,
-              share * gain * pitch * model_.pitch_scale, share * gain * pitch_velocity * model_.pitch_velocity_scale});
+  for (double& each : moved) each *= share * gain;
+  move_state(moved);
   Crossing& here = crossings_.back();
   here.skipped = skipped * here.cycle;
   now_.t += here.skipped;

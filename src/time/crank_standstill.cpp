@@ -13,7 +13,7 @@ bool CrankStartUp::stands_for_good() {
   const Supply<double>& supply = model_.supply;
   const double R = circuit_resistance(v), K = v.motor.torque_constant, tau = model_.electrical_time;
   const StandingTorques<double> torques = model_.standing_torques(now_.moving.angle);
-  const auto held_at = [&](double current) { return torques.hold(K * current); };
+  const auto held_at = [&](double i) { return torques.hold(K * current_within(v.electronics, i)); };
   bool for_good = now_.t >= stuck_until_;
   if (!model_.wings_rest()) {
     if (stuck_until_ == infinity) stuck_until_ = shaken_until();

@@ -65,10 +65,10 @@ TransientResult CrankStartUp::run() {
   result_.end_crank_angle = now_.moving.angle;
   result_.cycles = int(crossings_.size());
   if (!crossings_.empty()) {
-    result_.crank_speed = crossings_.back().omega;
-    result_.current = crossings_.back().current;
-    result_.pitch_angle = crossings_.back().psi;
-    result_.pitch_velocity = crossings_.back().pitch_velocity;
+    result_.state = crossings_.back().state;
+    result_.state.angle = 0.0;
+    result_.crank_speed = result_.state.speed;
+    result_.current = result_.state.current;
   }
   return std::move(result_);
 }
@@ -142,12 +142,13 @@ void CrankStartUp::step_taken(Integrator& steps, double from) {
   // A heavy rotor takes long steps, however the stroke bends within a few degrees of the crank.
   constexpr double fine = 0.02;  // [rad]
   track_extremes(steps, from, int(std::ceil(std::abs(now_.moving.angle - steps.dense(from)[0]) / fine)));
-  if (model_.indices.pitching) take_rows(steps, measured_from_, crossings_.back().cycle, measured_angle_, 1e-6);
+  if (pitches(model_.vehicle) || is_of_further_kind(model_.vehicle))
+    take_rows(steps, measured_from_, crossings_.back().cycle, measured_angle_, 1e-6);
 }
 
 void CrankStartUp::track_inrush(Integrator& steps, double from) {
   const auto slope = [&](double t) {
-    double rates[5] = {};
+    double rates[max_unknowns] = {};
     if (!model_.indices.inductive) rates[1] = steps.dense(t, 1)[1];
     return model_.current_slope(t, steps.dense(t), rates);
   };

@@ -67,13 +67,16 @@ class CrankStartUp : public StartUpRun {
   double measured_angle_ = 0.0;
 
   struct Crossing {
-    double time, omega, current;
+    double time;
+    Coordinates<double> state;
     double cycle;    // duration of the cycle that ended here [s]
     double skipped;  // time of the cycles that a jump left out after it [s]
-    double psi = 0.0, pitch_velocity = 0.0;
   };
+  /// What a crossing is compared by: speed, current, pitch and twist, over their typical sizes.
+  using Scaled = std::array<double, 6>;
+  Scaled scaled(const Coordinates<double>& c) const;
   double state_change(const Crossing& before) const;
-  void move_state(const std::array<double, 4>& by);
+  void move_state(const Scaled& by);
   std::vector<Crossing> crossings_;
   int cycles_compared_ = 0;  // successive cycles since the start or the last jump
   double change_ = std::numeric_limits<double>::infinity(), rate_ = 1.0, last_rate_ = 1.0;

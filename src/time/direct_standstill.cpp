@@ -15,6 +15,10 @@ constexpr int creep_periods = 8;  // of ever shorter slips in one direction, tha
 /// The largest torque of the motor at rest from now on [N m]: its current is a sine and what remains of its start.
 double DirectStartUp::largest_torque() const {
   const Motor<double>& m = model_.vehicle.motor;
+  if (is_given(model_.vehicle.piezo)) {
+    const double offset = std::abs(model_.vehicle.voltage_offset);
+    return model_.drive_torque * (model_.supply.voltage > 0.0 ? 1.0 + offset / model_.supply.voltage : 1.0);
+  }
   const double w = two_pi * model_.vehicle.drive_frequency;
   const double Z = std::hypot(m.armature_resistance, w * m.armature_inductance);
   const double lag = std::atan2(w * m.armature_inductance, m.armature_resistance);
@@ -27,7 +31,8 @@ double DirectStartUp::largest_torque() const {
 /// True, with the decision, where nothing moves the shaft any more. Wings that still pitch shake it: they can only come
 /// to rest, so that a shaft which stands long enough does so for good.
 bool DirectStartUp::rests_for_good() {
-  const bool no_drive = model_.vehicle.voltage == 0.0 && std::abs(now_.moving.speed) < 1e-9 * model_.speed_scale &&
+  const bool no_drive = model_.vehicle.voltage == 0.0 && model_.vehicle.voltage_offset == 0.0 &&
+                        std::abs(now_.moving.speed) < 1e-9 * model_.speed_scale &&
                         std::abs(now_.moving.angle) < 1e-9 * model_.angle_scale && swing_ < 1e-9 * model_.angle_scale &&
                         wings_are_still();
   if (!now_.stuck) stuck_until_ = infinity;
@@ -56,8 +61,9 @@ bool DirectStartUp::rests_for_good() {
 
 /// Of wings that pitch: as nearly as the stroke has to be where nothing drives it.
 bool DirectStartUp::wings_are_still() const {
-  return !model_.indices.pitching || (std::abs(now_.moving.pitch_angle) < 1e-9 * model_.pitch_scale &&
-                                      std::abs(now_.moving.pitch_velocity) < 1e-9 * model_.pitch_velocity_scale);
+  const Coordinates<double>& c = now_.moving;
+  return std::abs(c.pitch_angle) + std::abs(c.twist_angle) < 1e-9 * model_.pitch_scale &&
+         std::abs(c.pitch_velocity) + std::abs(c.twist_velocity) < 1e-9 * model_.pitch_velocity_scale;
 }
 
 /// True, with the decision, where the drive alone cannot break the shaft away and the springs let it creep towards an

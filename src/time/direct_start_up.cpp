@@ -34,17 +34,15 @@ void DirectStartUp::settle(double closure, double change) {
   std::size_t first = swings_.size();
   while (first > 0 && std::abs(swings_[first - 1] / swings_.back() - 1.0) <= 1e-2) --first;
   result_.time_to_steady = double(first) * period_;
-  result_.stroke_angle = now_.moving.angle;
+  result_.state = now_.moving;
   result_.crank_speed = now_.moving.speed;
   result_.current = now_.moving.current;
-  result_.pitch_angle = now_.moving.pitch_angle;
-  result_.pitch_velocity = now_.moving.pitch_velocity;
   result_.evidence = {.kind = Evidence::settled_periods,
                       .frequency = model_.vehicle.drive_frequency,
                       .time = result_.time_to_steady,
                       .change = change,
                       .cycles = result_.cycles};
-  if (model_.indices.pitching) pitching_.add_to(result_.evidence, model_);
+  if (pitches(model_.vehicle)) pitching_.add_to(result_.evidence, model_);
 }
 
 void DirectStartUp::period_done() {
@@ -60,7 +58,7 @@ void DirectStartUp::period_done() {
   double change = 0.0;
   for (std::size_t n = 0; n < model_.indices.count; ++n) {
     // Without springs nothing returns the shaft to any angle.
-    if (n == 0 && !(model_.vehicle.spring.stiffness > 0.0)) continue;
+    if (n == 0 && !(model_.vehicle.spring.stiffness > 0.0) && !is_given(model_.vehicle.piezo)) continue;
     change = std::max(change, std::abs(y[n] - before_[n]) / scale[n]);
   }
   before_ = y;

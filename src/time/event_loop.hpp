@@ -85,15 +85,18 @@ PieceOutcome pass_piece(Model& model, double until, Watch& watch, const MakeInte
       model.set(*within, steps.dense(*within));
       return PieceOutcome::stopped;
     }
-    bool ends = false;
+    bool ends = outcome == Integrator::Outcome::root;  // also where rounding hides which
     if (outcome == Integrator::Outcome::step) doing([&] { ends = model.branch_lost(); });
+    bool found = false, ended = false;  // what ends no piece, and what does
     for (std::size_t k = 0; k < Model::indicator_count; ++k) {
       if (outcome != Integrator::Outcome::root || !steps.found(int(k))) continue;
       const std::optional<Kind> kind = model.event_at(k);
+      const bool ends_here = model.ends_piece(k);
       doing([&] { model.handle(k); });
       if (kind) tell(*kind);
-      ends |= model.ends_piece(k);
+      found |= !ends_here, ended |= ends_here;
     }
+    if (found && !ended) ends = false;
     if (outcome == Integrator::Outcome::stop && stop == switching) switch_supply();
     if (watch.enough(model, outcome == Integrator::Outcome::step && !ends) || stops) return PieceOutcome::stopped;
     if (outcome == Integrator::Outcome::stop) return PieceOutcome::reached;

@@ -287,7 +287,10 @@ std::unique_ptr<Integrator> own_integrator(IntegratorProblem problem) {
     case 2: return std::make_unique<OwnIntegrator<2, quadrature_count>>(std::move(problem));
     case 3: return std::make_unique<OwnIntegrator<3, quadrature_count>>(std::move(problem));
     case 4: return std::make_unique<OwnIntegrator<4, quadrature_count>>(std::move(problem));
-    default: return std::make_unique<OwnIntegrator<5, quadrature_count>>(std::move(problem));
+    case 5: return std::make_unique<OwnIntegrator<5, quadrature_count>>(std::move(problem));
+    case 6: return std::make_unique<OwnIntegrator<6, quadrature_count>>(std::move(problem));
+    case 7: return std::make_unique<OwnIntegrator<7, quadrature_count>>(std::move(problem));
+    default: return std::make_unique<OwnIntegrator<8, quadrature_count>>(std::move(problem));
   }
 }
 

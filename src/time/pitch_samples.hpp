@@ -30,24 +30,32 @@ class PitchSamples {
     constexpr double nodes[] = {-0.9061798459386640, -0.5384693101056831, 0.0, 0.5384693101056831, 0.9061798459386640};
     constexpr double weights[] = {0.2369268850561891, 0.4786286704993665, 0.5688888888888889, 0.4786286704993665,
                                   0.2369268850561891};
-    const std::size_t pitch = model.indices.pitch;
+    const bool plain = !model.further && !has_friction(model.vehicle.pitch.hinge);
     const double half = 0.5 * (model.now.t - from), middle = from + half;
     double sign = 1.0;
     for (int k = 0; k < 5; ++k) {
       const double t = middle + half * nodes[k];
       const double* y = steps.dense(t);
-      const CrankKinematics<double> kinematics = model.kinematics(y[0]);
-      const double psi = y[pitch], velocity = model.now.held ? 0.0 : y[pitch + 1];
-      points_.push_back({t, half * weights[k], stroke_angle_at(model.vehicle, kinematics, y[0]), psi});
-      loss_ += half * weights[k] * hinge_loads(model.vehicle.pitch.hinge, psi, velocity).loss;
-      const double stroke_velocity = kinematics.stroke_slope * y[1], stroke = sign_of(stroke_velocity);
-      const PitchState<double> state = pitch_state<double>(psi, velocity, stroke_velocity);
-      chordwise_ += half * weights[k] * chordwise_lift(model.vehicle.pitch, state);
+      const Coordinates<double> c = model.indices.coordinates(y);
+      const CrankKinematics<double> kinematics = model.kinematics(c.angle);
+      const double psi = local_pitch(c), stroke_velocity = kinematics.stroke_slope * c.speed;
+      const double stroke = sign_of(stroke_velocity);
+      points_.push_back({t, half * weights[k], stroke_angle_at(model.vehicle, kinematics, c.angle), psi});
+      if (plain) {
+        const double velocity = model.now.held ? 0.0 : c.pitch_velocity;
+        const PitchState<double> state = pitch_state<double>(psi, velocity, stroke_velocity);
+        loss_ += half * weights[k] * hinge_loads(model.vehicle.pitch.hinge, psi, velocity).loss;
+        chordwise_ += half * weights[k] * chordwise_lift(model.vehicle.pitch, state);
+      } else {
+        const PitchMotion<double> m = model.motion(t, y);
+        loss_ += half * weights[k] * m.hinge_loss;
+        chordwise_ += half * weights[k] * m.chordwise_lift;
+      }
       if (stroke * psi > still_pitch) metrics_.over_rotation += half * weights[k];
       if (k == 2) sign = stroke;
     }
     for (const double t : {from, model.now.t}) {
-      const double psi = steps.dense(t)[pitch], alpha = 0.5 * pi + sign * psi;
+      const double psi = local_pitch(model.indices.coordinates(steps.dense(t))), alpha = 0.5 * pi + sign * psi;
       lowest_psi_ = std::min(lowest_psi_, psi);
       highest_psi_ = std::max(highest_psi_, psi);
       metrics_.angle_of_attack_min = std::min(metrics_.angle_of_attack_min, alpha);

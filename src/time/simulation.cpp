@@ -66,7 +66,10 @@ std::vector<std::string> time_state_names(const Vehicle<double>& vehicle) {
   std::vector<std::string> names{"crank_angle", "crank_speed"};
   if (drive_of(vehicle).alternating) names = {"stroke_angle", "flapping_velocity"};
   if (has_current_state(vehicle)) names.emplace_back("current");
-  if (pitches(vehicle)) names.insert(names.end(), {"pitch_angle", "pitch_velocity"});
+  const UnknownIndices indices(vehicle);
+  if (indices.compliant) names.insert(names.end(), {"tip", "tip_velocity"});
+  if (indices.pitching) names.insert(names.end(), {"pitch_angle", "pitch_velocity"});
+  if (indices.twisting) names.insert(names.end(), {"twist_angle", "twist_velocity"});
   return names;
 }
 
@@ -77,8 +80,7 @@ struct Simulation::Model {
   double scaled_to = 0.0;                   ///< [V]
 
   void start() {
-    const SimulationOptions& o = options;
-    in_time.start({o.angle, o.speed, o.current, o.pitch_angle, o.pitch_velocity});
+    in_time.start(options.start());
     scaled_to = in_time.supply.voltage;
   }
   /// The line through the samples that holds from the time t on, and the time until which it does.
@@ -101,7 +103,8 @@ Simulation::Simulation(const Vehicle<double>& vehicle, const Supply<double>& sup
     throw ParameterError("tolerance", "must be a number between 1e-12 and 1e-2");
   }
   for (const double number :
-       {options.angle, options.speed, options.current, options.pitch_angle, options.pitch_velocity}) {
+       {options.angle, options.speed, options.current, options.pitch_angle, options.pitch_velocity, options.twist_angle,
+        options.twist_velocity, options.tip, options.tip_velocity}) {
     if (!std::isfinite(number)) throw ParameterError("simulation", "starts from finite numbers");
   }
   model_->start();
@@ -129,7 +132,7 @@ WaveformRow Simulation::now() const {
   const TimeModel& model = model_->in_time;
   const Coordinates<double>& moving = model.now.moving;
   return waveform_row(model.vehicle, model.motion_now(), model.now.t, moving.angle, moving.speed,
-                      model.stroke_angle(moving.angle), model.indices.pitching ? moving.pitch_angle : absent);
+                      model.stroke_angle(moving.angle), pitches(model.vehicle) ? local_pitch(moving) : absent);
 }
 
 bool Simulation::stands() const { return model_->in_time.now.stuck; }
@@ -196,7 +199,7 @@ SimulationState Simulation::save() const {
   const SimulationOptions& o = model_->options;
   const TimeModel& model = model_->in_time;
   SimulationState state{{double(model.indices.count) + (model.direct ? 0.5 : 0.0), o.angle, o.speed, o.current,
-                         o.pitch_angle, o.pitch_velocity}};
+                         o.pitch_angle, o.pitch_velocity, o.twist_angle, o.twist_velocity, o.tip, o.tip_velocity}};
   model.now.each(model.now, [&](const auto& number) { state.numbers.push_back(double(number)); });
   return state;
 }
@@ -208,7 +211,10 @@ void Simulation::restore(const SimulationState& state) {
   }
   const double* next = state.numbers.data() + 1;
   SimulationOptions& o = model_->options;
-  for (double* number : {&o.angle, &o.speed, &o.current, &o.pitch_angle, &o.pitch_velocity}) *number = *next++;
+  for (double* number : {&o.angle, &o.speed, &o.current, &o.pitch_angle, &o.pitch_velocity, &o.twist_angle,
+                         &o.twist_velocity, &o.tip, &o.tip_velocity}) {
+    *number = *next++;
+  }
   // What is fixed by the start: typical sizes, how far the crank can turn.
   model_->start();
   TimeModel::State& now = model_->in_time.now;

@@ -20,21 +20,16 @@ StartUp start_up_in_time(double tolerance, TimeIntegrator integrator) {
     options.metrics = false;
     options.max_steps = max_steps;
     const TransientResult r = simulate_start_up(vehicle, options);
-    StartUpOutcome outcome{r.status,      r.settled,        r.evidence, r.crank_speed, r.current, r.stroke_angle,
-                           r.pitch_angle, r.pitch_velocity, {}};
+    StartUpOutcome outcome{r.status, r.settled, r.evidence, r.state, {}};
     if (r.status != FlappingStatus::flapping || !r.settled) return outcome;
-    outcome.cycle = [vehicle, integrator, left = max_steps - r.steps, state = outcome](double wanted,
-                                                                                       const Reporting& reporting) {
+    outcome.cycle = [vehicle, integrator, left = max_steps - r.steps, state = outcome.state](
+                        double wanted, const Reporting& reporting) {
       TransientOptions onward;
       onward.integrator = integrator;
       onward.tolerance = std::max(wanted, tightest);
       onward.reporting = reporting;
       onward.max_steps = std::max(left, least_steps);
-      onward.crank_angle = state.stroke_angle;
-      onward.crank_speed = state.crank_speed;
-      onward.current = state.current;
-      onward.pitch_angle = state.pitch_angle;
-      onward.pitch_velocity = state.pitch_velocity;
+      onward.start = state;
       const TransientResult cycle = simulate_start_up(vehicle, onward);
       if (!cycle.settled || !cycle.metrics) return std::optional<SimulatedCycle>();
       return std::optional(

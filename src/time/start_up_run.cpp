@@ -11,7 +11,7 @@ std::array<double, CycleModel::indicator_count> CycleModel::indicators(double t,
   std::copy(own.begin(), own.end(), all.begin());
   // Kinks of what is summed up, and under the pitch law hardly of the loads.
   if (!measuring) all[stored_moment] = 1.0;
-  if (!measuring && !indices.pitching) all[reversal] = 1.0;
+  if (!measuring && !pitches(vehicle)) all[reversal] = 1.0;
   all[cycle_end] = direct ? -1.0 : y[0] - next_cycle;
   return all;
 }
@@ -31,20 +31,20 @@ StartUpRun::StartUpRun(const Vehicle<double>& vehicle, const Supply<double>& sup
           "must lie between 1e-11 and 1e-2", "1", options.tolerance);
   require(options.max_time >= 0.0, "transient.max_time", "must be >= 0", "s", options.max_time);
   require(options.record_interval >= 0.0, "transient.record_interval", "must be >= 0", "s", options.record_interval);
-  require(std::isfinite(options.crank_angle), "transient.crank_angle", "must be finite", "rad", options.crank_angle);
-  require(std::isfinite(options.crank_speed), "transient.crank_speed", "must be finite", "rad/s", options.crank_speed);
-  require(std::isfinite(options.pitch_angle), "transient.pitch_angle", "must be finite", "rad", options.pitch_angle);
-  require(std::isfinite(options.pitch_velocity), "transient.pitch_velocity", "must be finite", "rad/s",
-          options.pitch_velocity);
-  require(std::isfinite(options.current), "transient.current", "must be finite", "A", options.current);
+  const Coordinates<double>& c = options.start;
+  require(std::isfinite(c.angle), "transient.crank_angle", "must be finite", "rad", c.angle);
+  require(std::isfinite(c.speed), "transient.crank_speed", "must be finite", "rad/s", c.speed);
+  require(std::isfinite(c.pitch_angle), "transient.pitch_angle", "must be finite", "rad", c.pitch_angle);
+  require(std::isfinite(c.pitch_velocity), "transient.pitch_velocity", "must be finite", "rad/s", c.pitch_velocity);
+  require(std::isfinite(c.current), "transient.current", "must be finite", "A", c.current);
 
-  model_.start(
-      {options_.crank_angle, options_.crank_speed, options_.current, options_.pitch_angle, options_.pitch_velocity});
+  model_.start(options_.start);
   const Vehicle<double>& v = model_.vehicle;
   const double current = model_.current_scale, speed = model_.speed_scale, K = v.motor.torque_constant;
   const double slope = model_.direct ? 1.0 : typical_stroke_slope(v.transmission);
-  const double force = K * current / (model_.direct ? 1.0 : typical_crank_lever(v.transmission));
-  const double power = current * (K * speed + current * circuit_resistance(v));
+  const double torque = is_given(v.piezo) ? model_.drive_torque : K * current;
+  const double force = torque / (model_.direct ? 1.0 : typical_crank_lever(v.transmission));
+  const double power = torque * speed + square(current) * circuit_resistance(v);
   const auto size = [&](Integral which) {
     switch (which) {
       case Integral::current: return current;
@@ -101,7 +101,7 @@ void StartUpRun::pass(double until) {
 
 std::optional<double> StartUpRun::stepped(const TimeModel&, Integrator& steps, double from) {
   step_taken(steps, from);
-  if (model_.measuring && model_.indices.pitching) pitching_.step_taken(model_, steps, from);
+  if (model_.measuring && pitches(model_.vehicle)) pitching_.step_taken(model_, steps, from);
   recorder_.step_taken({now_.t, now_.moving.angle, now_.moving.speed, now_.moving.current}, [&](double t) {
     const double* y = steps.dense(t);
     return TransientSample{t, y[0], y[1], model_.current_of(t, y)};
@@ -160,7 +160,7 @@ void StartUpRun::take_metrics(double start, double end, int cycles) {
   integrals[std::size_t(Integral::reactive_work)] = variation_ / cycles;
   set_gear_work(model_.vehicle.motor, (model_.motor_energy() - motor_mark_) / cycles, integrals);
   result_.metrics = cycle_metrics(model_.vehicle, integrals, extremes_, absent, options_.reporting);
-  if (model_.indices.pitching) pitching_.finish(model_, start, end, cycles, *result_.metrics);
+  if (pitches(model_.vehicle)) pitching_.finish(model_, start, end, cycles, *result_.metrics);
   result_.averaged_cycles = cycles;
 }
 
@@ -187,16 +187,17 @@ void StartUpRun::take_rows(Integrator& steps, double start, double period, doubl
     if (t > now_.t + slack * period) return;
     const double* y = steps.dense(std::min(t, now_.t));
     const Motion<double> m = model_.motion(t, y);
-    result_.cycle.push_back(waveform_row(model_.vehicle, m, since, y[0] - angle_0,
-                                         model_.direct ? m.stroke_velocity : y[1],
-                                         stroke_angle_at(model_.vehicle, m.kinematics, y[0]),
-                                         model_.indices.pitching ? y[model_.indices.pitch] : absent));
+    result_.cycle.push_back(
+        waveform_row(model_.vehicle, m, since, y[0] - angle_0, model_.direct ? m.stroke_velocity : y[1],
+                     stroke_angle_at(model_.vehicle, m.kinematics, y[0]),
+                     pitches(model_.vehicle) ? local_pitch(model_.indices.coordinates(y)) : absent));
   }
 }
 
 double StartUpRun::shaken_until() const {
   const PitchingWings<double>& wings = model_.vehicle.pitch;
-  const double own = two_pi * std::sqrt((wings.pitch_inertia + wings.air.pp) / wings.hinge.stiffness);
+  const double stiffness = is_clamped(wings.hinge) ? wings.torsion.stiffness : wings.hinge.stiffness;
+  const double own = two_pi * std::sqrt((wings.pitch_inertia + wings.air.pp) / stiffness);
   return now_.t + 3.0 * own + 2.0 * model_.drive_period + 20.0 * model_.electrical_time;
 }
 

@@ -43,7 +43,11 @@ class CycleModel : public TimeModel {
   std::optional<TransientEvent::Kind> event_at(std::size_t indicator) const {
     return indicator < cycle_end ? TimeModel::event_at(indicator) : std::optional(TransientEvent::Kind::revolution);
   }
-  static constexpr bool ends_piece(std::size_t k) { return k == force || k == standstill || k == jam || k == stop; }
+  /// Not kinks that the integrator steps over.
+  bool ends_piece(std::size_t k) const {
+    const bool is_jump = (k == turn && has_friction(vehicle.pitch.hinge)) || k == bridge || k == limit;
+    return is_jump || k == force || k == standstill || k == jam || k == stop;
+  }
 };
 
 class StartUpRun {

@@ -14,8 +14,12 @@ namespace {
 constexpr double stiff_decays_per_cycle = 500.0;
 
 Supply<double> supply_in_time(const Vehicle<double>& vehicle, const Supply<double>& supply) {
-  if (!drive_of(vehicle).rotates) return {SupplyType::sine, vehicle.voltage, vehicle.drive_frequency, 1.0};
-  const bool steady_pwm = supply.type == SupplyType::pwm && (supply.duty <= 0.0 || supply.duty >= 1.0);
+  if (!drive_of(vehicle).rotates) {
+    return {SupplyType::sine, vehicle.voltage, vehicle.drive_frequency, 1.0, {}, vehicle.voltage_offset};
+  }
+  // The bridge of a brushless motor switches by itself: what it is told is the mean.
+  const bool steady_pwm = supply.type == SupplyType::pwm &&
+                          (supply.duty <= 0.0 || supply.duty >= 1.0 || limits_current(vehicle.electronics));
   if (steady_pwm || supply.type == SupplyType::battery) {
     return {SupplyType::constant, mean_voltage(supply), 0.0, 1.0};
   }
@@ -31,8 +35,11 @@ TimeModel::TimeModel(const Vehicle<double>& v, const Supply<double>& on)
       coupled(int(indices.count)),
       direct(!drive_of(v).rotates),
       force_matters(force_has_branches(v)),
+      wings_pitch(pitches(v)),
+      further(is_of_further_kind(v)),
       jumps_(jumps_at_rest(v)) {
-  validate(vehicle.motor);
+  if (is_given(vehicle.piezo)) validate(vehicle.piezo);
+  else validate(vehicle.motor);
   if (!direct) validate(vehicle.transmission);
   validate(vehicle.friction);
   validate(vehicle.spring);
@@ -48,7 +55,7 @@ TimeModel::TimeModel(const Vehicle<double>& v, const Supply<double>& on)
             vehicle.source_resistance);
     vehicle.voltage = mean_voltage(on);
   }
-  if (indices.pitching) validate(vehicle.pitch, vehicle.wing_count * vehicle.wing_inertia);
+  if (wings_pitch) validate(vehicle.pitch, vehicle.wing_count * vehicle.wing_inertia);
 }
 
 void TimeModel::start(const Coordinates<double>& from) {
@@ -56,6 +63,8 @@ void TimeModel::start(const Coordinates<double>& from) {
   now.moving = from;
   indices = UnknownIndices(vehicle);
   coupled = int(indices.count);
+  wings_pitch = pitches(vehicle);
+  further = is_of_further_kind(vehicle);
   wingless = vehicle.wing_count * vehicle.wing_inertia == 0.0 && vehicle.wing_count * vehicle.spring.stiffness == 0.0 &&
              vehicle.wings.air_density * vehicle.wings.s3 == 0.0;
   constant_friction = breakaway_torque(vehicle);
@@ -63,23 +72,32 @@ void TimeModel::start(const Coordinates<double>& from) {
   start_ = from;
   if (!indices.inductive) {
     start_.current = 0.0;
-    now.moving.current = algebraic_current(vehicle, voltage(0.0), from.speed);
+    now.moving.current = current_now();
   }
+  if (is_clamped(vehicle.pitch.hinge)) now.held = true;
   find_jams();
   scale_to(supply.voltage);
   now.jammed = !wingless && uniqueness_now() <= smallest_margin;
+  if (indices.pitching && has_friction(vehicle.pitch.hinge)) {
+    now.turn = sign_of(from.pitch_velocity);
+    if (from.pitch_velocity == 0.0 && !now.jammed) settle_pitch();
+  }
 }
 
 void TimeModel::scale_to(double highest_voltage) {
   const Motor<double>& m = vehicle.motor;
   const double R = circuit_resistance(vehicle);
-  electrical_time = m.armature_inductance / R;
+  electrical_time = is_given(vehicle.piezo) ? 0.0 : m.armature_inductance / R;
   drive_period = supply.type == SupplyType::constant ? 0.0 : 1.0 / supply.frequency;
   if (direct) scale_direct(highest_voltage);
   else scale_crank(highest_voltage);
   const double damping = m.viscous_damping + vehicle.friction.damping;
-  fastest_decay = indices.inductive ? std::max(1.0 / electrical_time, damping / smallest_inertia)
-                                    : (damping + square(m.torque_constant) / R) / smallest_inertia;
+  if (is_given(vehicle.piezo)) {
+    fastest_decay = vehicle.piezo.damping / vehicle.piezo.mass;
+  } else {
+    fastest_decay = indices.inductive ? std::max(1.0 / electrical_time, damping / smallest_inertia)
+                                      : (damping + square(m.torque_constant) / R) / smallest_inertia;
+  }
 }
 
 void TimeModel::scale_crank(double highest_voltage) {
@@ -97,10 +115,12 @@ void TimeModel::scale_crank(double highest_voltage) {
   const double wings = vehicle.wing_count * vehicle.wing_inertia * square(slope);
   mechanical_time = (m.inertia + wings) * R / (K * K + R * m.viscous_damping);
   time_scale = two_pi / speed_scale;
-  force_scale = (m.inertia + wings) * K * current_scale / slope;
-  if (!indices.pitching) return;
+  torque_scale = K * current_scale;
+  force_scale = (m.inertia + wings) * torque_scale / slope;
+  if (!wings_pitch) return;
   pitch_scale = std::max({typical_pitch(vehicle, slope * speed_scale, speed_scale), std::abs(start_.pitch_angle),
-                          std::abs(start_.pitch_velocity) / speed_scale});
+                          std::abs(start_.twist_angle), std::abs(start_.pitch_velocity) / speed_scale,
+                          std::abs(start_.twist_velocity) / speed_scale});
   pitch_velocity_scale = speed_scale * pitch_scale;
 }
 
@@ -119,23 +139,57 @@ void TimeModel::scale_direct(double highest_voltage) {
   speed_scale = std::max({speed_scale, std::abs(start_.speed), beta * natural});
   if (!(speed_scale > 0.0)) speed_scale = 1.0;
   angle_scale = std::max(speed_scale / natural, beta);
-  current_scale = std::max({balance.drive_torque / m.torque_constant, std::abs(start_.current),
-                            1e-3 * m.torque_constant * speed_scale / m.armature_resistance});
-  mechanical_time = inertia * circuit_resistance(vehicle) /
-                    (square(m.torque_constant) + circuit_resistance(vehicle) * m.viscous_damping);
-  force_scale = inertia * m.torque_constant * current_scale;
-  if (!indices.pitching) return;
-  pitch_scale = std::max(
-      {typical_pitch(vehicle, speed_scale), std::abs(start_.pitch_angle), std::abs(start_.pitch_velocity) / w});
+  torque_scale = balance.drive_torque;
+  current_scale = std::max(typical_current(at_highest, balance), std::abs(start_.current));
+  if (!is_given(vehicle.piezo)) {
+    current_scale = std::max(current_scale, 1e-3 * m.torque_constant * speed_scale / m.armature_resistance);
+    torque_scale = m.torque_constant * current_scale;
+    mechanical_time = inertia * circuit_resistance(vehicle) /
+                      (square(m.torque_constant) + circuit_resistance(vehicle) * m.viscous_damping);
+  }
+  if (!(torque_scale > 0.0)) torque_scale = inertia * w * speed_scale;
+  force_scale = inertia * torque_scale;
+  if (!wings_pitch) return;
+  pitch_scale =
+      std::max({typical_pitch(vehicle, speed_scale), std::abs(start_.pitch_angle), std::abs(start_.twist_angle),
+                std::abs(start_.pitch_velocity) / w, std::abs(start_.twist_velocity) / w});
   pitch_velocity_scale = w * pitch_scale;
+}
+
+SupplyMoment<double> TimeModel::supply_at(double t) const {
+  if (!is_given(vehicle.piezo)) return {voltage(t)};
+  if (command) {
+    const double span = 1e-6 * time_scale;
+    return {command(t), (command(t + span) - command(t - span)) / (2.0 * span)};
+  }
+  const double w = two_pi * supply.frequency;
+  return {voltage(t), supply.voltage * w * std::cos(w * t)};
+}
+
+FullState<double> TimeModel::instant(double t, const double* y) const {
+  const SupplyMoment<double> moment = supply_at(t);
+  Mode<double> here = mode();
+  if (!indices.inductive && limits_current(vehicle.electronics)) {
+    here = with_bridge(vehicle, moment.voltage, here.slip < 0.0 ? 0.0 : y[1], here);
+  }
+  return instant_at(vehicle, indices.coordinates(y), moment, here);
+}
+
+double TimeModel::current_now() const {
+  double y[max_unknowns];
+  unknowns(y);
+  return current_of(now.t, y);
 }
 
 Mode<double> TimeModel::mode() const {
   Mode<double> mode;
   mode.direction = now.direction;
   mode.force = now.force;
+  mode.turn = now.turn;
   if (now.held) mode.held = -1.0;
   if (now.stuck) mode.slip = -1.0;
+  if (now.blocked) mode.bridge = -1.0;
+  if (now.limited) mode.limit = -1.0;
   return mode;
 }
 
@@ -156,20 +210,25 @@ PitchMotion<double> TimeModel::motion_now() const {
 
 bool TimeModel::rates(double t, const double* y, double* dy, bool quadrature) const {
   Mode<double> mode;
-  const PitchMotion<double> m = motion(t, y, &mode);
+  const FullState<double> here = instant(t, y);
+  PitchMotion<double> m;
+  mode = on_force_branch(vehicle, here, this->mode(), &m);
   dy[0] = now.stuck ? 0.0 : y[1];
   dy[1] = m.crank_acceleration;
   if (indices.inductive) dy[indices.current] = m.inductive_voltage / vehicle.motor.armature_inductance;
+  if (indices.compliant) dy[indices.tip] = y[indices.tip + 1], dy[indices.tip + 1] = here.tip_acceleration;
   if (indices.pitching) {
     dy[indices.pitch] = now.held ? 0.0 : y[indices.pitch + 1];
     dy[indices.pitch + 1] = m.pitch_acceleration;
   }
+  if (indices.twisting) dy[indices.twist] = y[indices.twist + 1], dy[indices.twist + 1] = m.twist_acceleration;
   if (quadrature) {
     const CycleIntegrals<double> all = integrands<double>(m, dy[0], mode);
     for (int k = 0; k < quadrature_count; ++k) dy[coupled + k] = all[std::size_t(quadratures[k])];
   }
   bool finite = std::isfinite(dy[1]) && std::isfinite(y[coupled - 1]);
   if (indices.pitching) finite = finite && std::isfinite(dy[indices.pitch + 1]);
+  if (indices.twisting) finite = finite && std::isfinite(dy[indices.twist + 1]);
   return finite;
 }
 
@@ -179,6 +238,7 @@ double TimeModel::motor_energy() const {
 }
 
 double TimeModel::current_slope(double t, const double* y, const double* rates) const {
+  if (now.blocked || now.limited) return 0.0;
   const Motor<double>& m = vehicle.motor;
   const double R = circuit_resistance(vehicle);
   if (indices.inductive) return (voltage(t) - R * y[2] - m.torque_constant * y[1]) / m.armature_inductance;
@@ -202,7 +262,7 @@ void TimeModel::find_jams() {
   const double least = static_balance(vehicle).inertia_min / vehicle.motor.inertia;
   smallest_inertia *= std::clamp(least, 1e-3, 1.0);
   // Of wings that pitch it depends on how they stand: indicators() looks at that.
-  if (indices.pitching) return;
+  if (wings_pitch) return;
   const JamAngles jams = nearest_jams(vehicle, now.moving.angle, smallest_margin);
   jam_below = jams.below;
   jam_above = jams.above;
@@ -210,7 +270,7 @@ void TimeModel::find_jams() {
 
 double TimeModel::uniqueness_at(const double* y) const {
   if (direct) return 1.0;
-  if (!indices.pitching) return uniqueness(vehicle, y[0]);
+  if (!wings_pitch) return uniqueness(vehicle, y[0]);
   const CrankKinematics<double> k = kinematics(y[0]);
   const double lever = k.wing_jacobian / typical_lever(vehicle.transmission);
   if (!(lever > 0.0)) return lever;
@@ -227,19 +287,11 @@ double TimeModel::uniqueness_now() const {
 }
 
 double TimeModel::least_inertia_now() const {
-  if (!indices.pitching) return min_inertia(vehicle, kinematics(now.moving.angle));
+  if (!wings_pitch) return min_inertia(vehicle, kinematics(now.moving.angle));
   return uniqueness_now() * vehicle.motor.inertia;
 }
 
-void TimeModel::unknowns(double* y) const {
-  y[0] = now.moving.angle;
-  y[1] = now.moving.speed;
-  if (indices.inductive) y[indices.current] = now.moving.current;
-  if (indices.pitching) {
-    y[indices.pitch] = now.moving.pitch_angle;
-    y[indices.pitch + 1] = now.moving.pitch_velocity;
-  }
-}
+void TimeModel::unknowns(double* y) const { indices.unknowns(now.moving, y); }
 
 void TimeModel::set(double t, const double* y) {
   now.t = t;
@@ -248,23 +300,20 @@ void TimeModel::set(double t, const double* y) {
 }
 
 std::array<double, max_unknowns> TimeModel::typical() const {
-  std::array<double, max_unknowns> sizes = {angle_scale, speed_scale, current_scale};
-  sizes[indices.pitch] = pitch_scale;
-  sizes[std::min<std::size_t>(indices.pitch + 1, max_unknowns - 1)] = pitch_velocity_scale;
-  if (indices.inductive) sizes[indices.current] = current_scale;
+  const double ratio = is_given(vehicle.piezo) ? vehicle.piezo.transmission_ratio : 1.0;
+  std::array<double, max_unknowns> sizes;
+  sizes.fill(1.0);
+  indices.unknowns({angle_scale, speed_scale, current_scale, pitch_scale, pitch_velocity_scale, pitch_scale,
+                    pitch_velocity_scale, angle_scale / ratio, speed_scale / ratio},
+                   sizes.data());
   return sizes;
 }
 
 void TimeModel::tolerated(double relative, const double* y, double* errors) const {
+  const auto sizes = typical();
+  for (std::size_t n = 0; n < indices.count; ++n) errors[n] = relative * (std::abs(y[n]) + 0.01 * sizes[n]);
   // The crank angle grows for ever: its admissible error must not grow with it.
-  errors[0] = direct ? relative * (std::abs(y[0]) + 0.01 * angle_scale) : relative;
-  errors[1] = relative * (std::abs(y[1]) + 0.01 * speed_scale);
-  if (indices.inductive) errors[2] = relative * (std::abs(y[2]) + 0.01 * current_scale);
-  if (indices.pitching) {
-    const std::size_t pitch = indices.pitch;
-    errors[pitch] = relative * (std::abs(y[pitch]) + 0.01 * pitch_scale);
-    errors[pitch + 1] = relative * (std::abs(y[pitch + 1]) + 0.01 * pitch_velocity_scale);
-  }
+  if (!direct) errors[0] = relative;
 }
 
 double TimeModel::longest_step() const {
@@ -272,11 +321,13 @@ double TimeModel::longest_step() const {
   return direct && now.stuck ? time_scale / 64.0 : longest_moving_step();
 }
 
-double TimeModel::longest_moving_step() const { return time_scale / (direct && indices.pitching ? 16.0 : 4.0); }
+double TimeModel::longest_moving_step() const { return time_scale / (direct && (wings_pitch || further) ? 16.0 : 4.0); }
 
 bool TimeModel::stiff() const {
   const double span = drive_period > 0.0 ? std::min(time_scale, drive_period) : time_scale;
-  const double pitch_decay = indices.pitching ? vehicle.pitch.hinge.damping / vehicle.pitch.pitch_inertia : 0.0;
+  const double pitch_decay =
+      wings_pitch ? std::max(vehicle.pitch.hinge.damping, vehicle.pitch.torsion.damping) / vehicle.pitch.pitch_inertia
+                  : 0.0;
   return std::max(fastest_decay, pitch_decay) * span > stiff_decays_per_cycle;
 }
 
@@ -292,7 +343,7 @@ double TimeModel::next_switch() const {
 void TimeModel::switch_supply() {
   ++now.switches;
   now.switched_voltage = now.switches % 2 == 0 ? supply.voltage : 0.0;
-  if (!indices.inductive) now.moving.current = algebraic_current(vehicle, now.switched_voltage, now.moving.speed);
+  if (!indices.inductive) now.moving.current = current_now();
 }
 
 void TimeModel::catch_up_with_supply() {

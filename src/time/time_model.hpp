@@ -31,24 +31,39 @@ class TimeModel {
     bool leaving = false;               ///< has just broken away: friction does not hold it again at once
     bool jammed = false;                ///< has reached where its equations have no unique solution
     std::int64_t switches = 0;          ///< of a pwm supply so far: even ones turn on, number 0 at t = 0
-    bool held = false;                  ///< a stop holds the wings
+    bool held = false;                  ///< a stop, or friction of their joint, holds the wings
+    double turn = 1.0;                  ///< as of Mode, where friction of that joint depends on it
+    bool blocked = false;               ///< electronics let no current flow back
+    bool limited = false;               ///< they limit the current
     double impact_loss = 0.0;           ///< energy that stops have taken in impacts so far [J]
     CycleIntegrals<double> impulses{};  ///< what impacts have added to the integrals so far
 
     /// Calls use(number) for each of them.
     template <class Self, class Use>
     static void each(Self& self, const Use& use) {
-      use(self.t), use(self.moving.angle), use(self.moving.speed), use(self.moving.current),
-          use(self.moving.pitch_angle);
-      use(self.moving.pitch_velocity), use(self.direction), use(self.force), use(self.force_known);
-      use(self.switched_voltage), use(self.stuck), use(self.leaving), use(self.jammed), use(self.switches),
-          use(self.held);
-      use(self.impact_loss);
+      auto& c = self.moving;
+      use(self.t), use(c.angle), use(c.speed), use(c.current), use(c.pitch_angle), use(c.pitch_velocity);
+      use(c.twist_angle), use(c.twist_velocity), use(c.tip), use(c.tip_velocity);
+      use(self.direction), use(self.force), use(self.force_known), use(self.switched_voltage), use(self.stuck);
+      use(self.leaving), use(self.jammed), use(self.switches), use(self.held), use(self.turn), use(self.blocked);
+      use(self.limited), use(self.impact_loss);
       for (auto& x : self.impulses) use(x);
     }
   };
   /// Functions of the state whose sign changes are events.
-  enum Indicator { force, standstill, jam, stored_moment, reversal, stop, turn, indicator_count };
+  enum Indicator {
+    force,
+    standstill,
+    jam,
+    stored_moment,
+    reversal,
+    stop,
+    turn,
+    local_turn,  ///< of a twisting wing, where its pitch is reported
+    bridge,
+    limit,
+    indicator_count
+  };
 
   /// The supply of a direct drive is the vehicle's. Throws ParameterError for numbers out of range.
   TimeModel(const Vehicle<double>& vehicle, const Supply<double>& supply);
@@ -87,16 +102,19 @@ class TimeModel {
     if (command) return command(t);
     return supply.type == SupplyType::sine ? voltage_at(supply, t) : now.switched_voltage;
   }
+  SupplyMoment<double> supply_at(double t) const;
   double current_of(double t, const double* y) const {
-    return indices.inductive ? y[indices.current] : algebraic_current(vehicle, voltage(t), y[1]);
+    if (indices.inductive) return y[indices.current];
+    return further ? instant(t, y).current : algebraic_current(vehicle, voltage(t), y[1]);
   }
+  double current_now() const;
   CrankKinematics<double> kinematics(double angle) const { return configuration_at_angle(vehicle, angle).kinematics; }
   double stroke_angle(double angle) const { return stroke_angle_at(vehicle, kinematics(angle), angle); }
   /// What stands still, the direction and the sign of the rod force; no other sign of it means anything.
   Mode<double> mode() const;
-  MotionState<double> instant(double t, const double* y) const {
-    return instant_at(vehicle, indices.coordinates(y), voltage(t), mode());
-  }
+  FullState<double> instant(double t, const double* y) const;
+  /// Torque that the actuator gives a shaft that stands [N m].
+  double standing_torque(double t, const double* y) const { return wingbeat::standing_torque(vehicle, instant(t, y)); }
   /// What acts at the unknowns y, in the mode `used`.
   PitchMotion<double> motion(double t, const double* y, Mode<double>* used = nullptr) const;
   PitchMotion<double> motion_now() const;
@@ -123,7 +141,8 @@ class TimeModel {
   double least_inertia_now() const;
   /// True of wings that a standing shaft would not be shaken by.
   bool wings_rest() const {
-    return !indices.pitching || (now.moving.pitch_angle == 0.0 && now.moving.pitch_velocity == 0.0);
+    const Coordinates<double>& c = now.moving;
+    return c.pitch_angle == 0.0 && c.pitch_velocity == 0.0 && c.twist_angle == 0.0 && c.twist_velocity == 0.0;
   }
   /// Meets the stop that the wings are at and move on to.
   void resume();
@@ -144,9 +163,12 @@ class TimeModel {
   int coupled;         ///< number of unknowns
   bool direct;         ///< the shaft is the wings' hinge, and the cycle a period of the supply
   bool force_matters;  ///< the sign of the rod force matters
+  bool wings_pitch;    ///< or twist: pitches()
+  bool further;        ///< is_of_further_kind()
   bool wingless = false;
   double constant_friction = 0.0;
   double angle_scale = 0.1, speed_scale = 1.0, current_scale = 1.0, force_scale = 1.0;
+  double torque_scale = 1.0;  ///< of the actuator [N m]
   double pitch_scale = 1.0, pitch_velocity_scale = 1.0;
   double time_scale = 1.0;                              ///< of a cycle [s]
   double electrical_time = 0.0, mechanical_time = 0.0;  ///< time constants [s]
@@ -166,6 +188,10 @@ class TimeModel {
   double rotor_inertia() const;  ///< that counts where the mechanism may jam [kg m2]
   double stop_room(const double* y, const PitchMotion<double>& motion) const;
   void meet_stop();
+  void settle_pitch();
+  void settle_electronics();
+  double pressing(const double* y) const;
+  double surplus_voltage(double i) const;
 
   Coordinates<double> start_;
   bool jumps_;  ///< jumps_at_rest()

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "time/time_model.hpp"
+#include "wingbeat/vehicle/impact.hpp"
 
 namespace wingbeat::detail {
 
@@ -15,8 +16,8 @@ StandingTorques<double> TimeModel::standing_torques(double angle) const {
 }
 
 StandingTorques<double> TimeModel::standing_torques(const double* y) const {
-  if (!indices.pitching) return standing_torques(y[0]);
-  const MotionState<double> here = instant(now.t, y);
+  if (!wings_pitch) return standing_torques(y[0]);
+  const FullState<double> here = instant(now.t, y);
   const double moment = here.configuration.spring_moment + wings_standing(vehicle, here, mode()).moment;
   return wingbeat::standing_torques(vehicle, here.configuration.kinematics,
                                     static_rod_force(here.configuration.kinematics, moment));
@@ -55,27 +56,33 @@ std::array<double, TimeModel::indicator_count> TimeModel::indicators(double t, c
   values.fill(1.0);
   if (now.stuck) {
     const StandingTorques<double> torques = standing_torques(y);
-    const double K = vehicle.motor.torque_constant;
-    values[standstill] =
-        torques.margin(K * current_of(t, y)) / (indices.pitching ? K * current_scale : torques.friction());
+    values[standstill] = torques.margin(standing_torque(t, y)) / (wings_pitch ? torque_scale : torques.friction());
   } else if (jumps_) {
     values[standstill] = y[1] / speed_scale;
   }
-  if (now.stuck && !indices.pitching) return values;
+  if (limits_current(vehicle.electronics)) {
+    const double i = indices.inductive ? y[indices.current] : algebraic_current(vehicle, voltage(t), y[1]);
+    const double back_emf = vehicle.motor.torque_constant * (now.stuck ? 0.0 : y[1]), R = circuit_resistance(vehicle);
+    const double beyond = (voltage(t) - back_emf) / R, highest = vehicle.electronics.current_max;
+    if (!vehicle.electronics.regenerates) values[bridge] = (now.blocked ? -beyond : i) / current_scale;
+    if (std::isfinite(highest)) values[limit] = (now.limited ? beyond - highest : highest - i) / current_scale;
+  }
+  if (now.stuck && !wings_pitch) return values;
   PitchMotion<double> m;
   if (!wingless) m = motion(t, y);
   if (indices.pitching) {
     values[stop] = stop_room(y, m);
     values[turn] = now.held ? 1.0 : y[indices.pitch + 1] / pitch_velocity_scale;
   }
+  if (indices.twisting) values[local_turn] = local_pitch_velocity(indices.coordinates(y)) / pitch_velocity_scale;
   if (now.stuck) return values;
   if (!direct) {
-    values[jam] = indices.pitching ? std::min(1.0, uniqueness_at(y) - smallest_margin)
-                                   : std::min({1.0, jam_above - y[0], y[0] - jam_below});
+    values[jam] = wings_pitch ? std::min(1.0, uniqueness_at(y) - smallest_margin)
+                              : std::min({1.0, jam_above - y[0], y[0] - jam_below});
   }
   if (wingless) return values;
   if (force_matters) values[force] = m.force_switch / force_scale;
-  values[stored_moment] = m.stored_moment / (force_scale / vehicle.motor.inertia);
+  values[stored_moment] = m.stored_moment / torque_scale;
   values[reversal] =
       direct ? y[1] / speed_scale : m.kinematics.stroke_slope / typical_stroke_slope(vehicle.transmission);
   return values;
@@ -84,17 +91,18 @@ std::array<double, TimeModel::indicator_count> TimeModel::indicators(double t, c
 /// At a standstill it is held, or moves on in the direction of the torque.
 void TimeModel::begin_piece() {
   resume();
+  settle_electronics();
   // Without inductance the current jumps with the voltage, and what friction held may not be held any more.
   if (now.jammed || !jumps_ || (now.stuck && indices.inductive)) return;
   const bool leaving = std::exchange(now.leaving, false);
   if (now.moving.speed != 0.0) {
     now.direction = sign_of(now.moving.speed);
   } else if (!leaving) {
-    if (!indices.inductive) now.moving.current = algebraic_current(vehicle, voltage(now.t), 0.0);
+    if (!indices.inductive) now.moving.current = current_now();
     double y[max_unknowns];
     unknowns(y);
     const StandingTorques<double> torques = standing_torques(y);
-    const double torque = vehicle.motor.torque_constant * now.moving.current;
+    const double torque = standing_torque(now.t, y);
     now.direction = torques.direction(torque);
     now.stuck = torques.hold(torque);
     if (now.stuck) return;
@@ -103,7 +111,8 @@ void TimeModel::begin_piece() {
 }
 
 std::array<int, TimeModel::indicator_count> TimeModel::directions() const {
-  return {int(-now.force), now.stuck ? -1 : int(-now.direction), -1, 0, 0, -1, 0};
+  const int turning = has_friction(vehicle.pitch.hinge) ? int(-now.turn) : 0, held_current = indices.inductive ? -1 : 0;
+  return {int(-now.force), now.stuck ? -1 : int(-now.direction), -1, 0, 0, -1, turning, 0, held_current, held_current};
 }
 
 void TimeModel::handle(std::size_t indicator) {
@@ -112,7 +121,7 @@ void TimeModel::handle(std::size_t indicator) {
     if (now.stuck) {
       double y[max_unknowns];
       unknowns(y);
-      now.direction = standing_torques(y).direction(vehicle.motor.torque_constant * current_of(now.t, y));
+      now.direction = standing_torques(y).direction(standing_torque(now.t, y));
       now.leaving = true;
     }
     now.stuck = false;
@@ -122,10 +131,45 @@ void TimeModel::handle(std::size_t indicator) {
     now.force = -now.force;
     now.force_known = now.moving.speed != 0.0;
   }
-  if (indicator == stop) {
-    if (now.held) now.held = false;
-    else meet_stop();
+  if (indicator == turn && has_friction(vehicle.pitch.hinge)) {
+    now.moving.pitch_velocity = 0.0;
+    settle_pitch();
   }
+  if (indicator == stop) {
+    if (now.held) {
+      double y[max_unknowns];
+      unknowns(y);
+      now.turn = leaving_side(vehicle.pitch.hinge, now.moving.pitch_angle, pressing(y));
+      now.held = false;
+    } else {
+      meet_stop();
+    }
+  }
+  if (indicator == bridge && indices.inductive) {
+    now.blocked = !now.blocked;
+    if (now.blocked) now.moving.current = 0.0;
+  }
+  if (indicator == limit && indices.inductive) {
+    now.limited = !now.limited;
+    if (now.limited) now.moving.current = vehicle.electronics.current_max;
+  }
+}
+
+/// Voltage left for the current beyond that of i [V].
+double TimeModel::surplus_voltage(double i) const {
+  const double omega = now.stuck ? 0.0 : now.moving.speed;
+  return voltage(now.t) - vehicle.motor.torque_constant * omega - circuit_resistance(vehicle) * i;
+}
+
+/// Whether electronics block or limit the current, as it is and is about to be.
+void TimeModel::settle_electronics() {
+  const Electronics<double>& e = vehicle.electronics;
+  if (!indices.inductive || !limits_current(e)) return;
+  double& i = now.moving.current;
+  now.blocked = !e.regenerates && (i <= 0.0 || now.blocked) && surplus_voltage(0.0) < 0.0;
+  now.limited = (i >= e.current_max || now.limited) && surplus_voltage(e.current_max) > 0.0;
+  if (now.blocked) i = 0.0;
+  if (now.limited) i = e.current_max;
 }
 
 std::optional<TransientEvent::Kind> TimeModel::event_at(std::size_t indicator) const {
@@ -139,6 +183,14 @@ bool TimeModel::branch_lost() {
   if (indices.pitching && !now.held && std::abs(now.moving.pitch_angle) > vehicle.pitch.hinge.stop * (1.0 + 1e-9)) {
     meet_stop();
     return true;
+  }
+  if (indices.inductive && limits_current(vehicle.electronics)) {
+    const double i = now.moving.current, highest = vehicle.electronics.current_max;
+    const bool below = !vehicle.electronics.regenerates && !now.blocked && i < -1e-9 * current_scale;
+    if (below || (!now.limited && i > highest + 1e-9 * current_scale)) {
+      settle_electronics();
+      return now.blocked || now.limited;
+    }
   }
   if (now.stuck || !jumps_) return false;
   if (now.direction * now.moving.speed < -1e-9 * speed_scale) return true;
@@ -167,12 +219,10 @@ void TimeModel::meet_stop() {
     now.jammed = true;
     return;
   }
-  MotionState<double> instant{configuration_at_angle(vehicle, now.moving.angle),
-                              now.moving.speed,
-                              now.moving.current,
-                              0.0,
-                              now.moving.pitch_angle,
-                              now.moving.pitch_velocity};
+  double before[max_unknowns];
+  unknowns(before);
+  FullState<double> instant = this->instant(now.t, before);
+  instant.pitch_velocity = now.moving.pitch_velocity;
   Mode<double> after = mode();
   wingbeat::meet_stop(vehicle, &instant, &after, [&](const StopImpact<double>& impact) {
     now.impact_loss += impact.stop_work;
@@ -181,9 +231,10 @@ void TimeModel::meet_stop() {
   });
   now.moving.speed = instant.omega;
   now.moving.pitch_velocity = instant.pitch_velocity;
+  now.moving.twist_velocity = instant.twist.velocity;
   now.stuck = after.slip < 0.0;
   now.direction = after.direction;
-  if (!indices.inductive) now.moving.current = algebraic_current(vehicle, voltage(now.t), now.moving.speed);
+  if (!indices.inductive) now.moving.current = current_now();
   double y[max_unknowns];
   unknowns(y);
   const bool stands = now.stuck || (jumps_ && now.moving.speed == 0.0);
@@ -191,17 +242,33 @@ void TimeModel::meet_stop() {
   for (int sweep = 0; sweep < 2 && !stands && force_matters; ++sweep) {
     now.force = sign_of(motion(now.t, y).force_switch);
   }
-  const double presses =
-      stands ? wings_standing(vehicle, this->instant(now.t, y), mode()).pitching_moment : motion(now.t, y).stop_moment;
-  if (side * presses < 0.0) now.held = false;
+  settle_pitch();
 }
 
-/// Room to the stop or, of wings that it holds, how they press on it [1].
+/// How wings that are held press towards a positive psi [N m].
+double TimeModel::pressing(const double* y) const {
+  const bool stands = now.stuck || (jumps_ && now.moving.speed == 0.0);
+  return stands ? wings_standing(vehicle, instant(now.t, y), mode()).pitching_moment : motion(now.t, y).stop_moment;
+}
+
+/// Whether wings that rest are held, or to which side they go.
+void TimeModel::settle_pitch() {
+  double y[max_unknowns];
+  unknowns(y);
+  now.held = true;
+  const double presses = pressing(y);
+  if (holding_margin(vehicle.pitch.hinge, now.moving.pitch_angle, presses) >= 0.0) return;
+  now.held = false;
+  now.turn = leaving_side(vehicle.pitch.hinge, now.moving.pitch_angle, presses);
+}
+
+/// Room to the stop or, of wings that are held, what holds them beyond what would move them [1].
 double TimeModel::stop_room(const double* y, const PitchMotion<double>& motion) const {
-  const double stop_angle = vehicle.pitch.hinge.stop, psi = y[indices.pitch];
-  if (!has_stop(vehicle.pitch.hinge)) return 1.0;
-  if (!now.held) return (stop_angle - std::abs(psi)) / stop_angle;
-  return sign_of(psi) * motion.stop_moment / (vehicle.pitch.pitch_inertia * speed_scale * pitch_velocity_scale);
+  const PitchHinge<double>& hinge = vehicle.pitch.hinge;
+  const double psi = y[indices.pitch];
+  if (!now.held) return has_stop(hinge) ? (hinge.stop - std::abs(psi)) / hinge.stop : 1.0;
+  return holding_margin(hinge, psi, motion.stop_moment) /
+         (vehicle.pitch.pitch_inertia * speed_scale * pitch_velocity_scale);
 }
 
 }  // namespace wingbeat::detail

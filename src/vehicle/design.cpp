@@ -69,6 +69,34 @@ void validate_direct(const Design<double>& d) {
   }
 }
 
+/// What a piezo needs and cannot have.
+void validate_piezo(const Design<double>& d) {
+  if (d.transmission.type != TransmissionType::direct) {
+    throw ParameterError("transmission.type",
+                         "a piezo swings the wings through the transmission that [piezo] states: expected direct");
+  }
+  if (d.spring.resonance || d.spring.resonance_ratio || d.supply_resonance_ratio || d.wing.resonance) {
+    const char* key = d.spring.resonance         ? "spring.resonance"
+                      : d.spring.resonance_ratio ? "spring.resonance_ratio"
+                      : d.wing.resonance         ? "wing.resonance"
+                                                 : "supply.resonance_ratio";
+    throw ParameterError(key,
+                         "the stiffness of a piezo counts beside the springs': give spring.stiffness, wing.inertia "
+                         "and supply.frequency");
+  }
+  if (d.electronics.efficiency) {
+    throw ParameterError(electronics_key::efficiency.path,
+                         "is of a brushless motor; what a piezo's electronics lose is piezo.recovered_share");
+  }
+}
+
+/// Electronics turn a brushless motor one way.
+void validate_electronics(const Design<double>& d) {
+  if (!drive_of(d).rotates) {
+    throw ParameterError(electronics_key::efficiency.path, "a brushless motor turns a crank: not of a direct drive");
+  }
+}
+
 /// A bridge swings a direct drive, by no more than its battery's voltage; under load simulate_discharge() tells.
 void validate_bridge(const Design<double>& d) {
   if (d.transmission.type != TransmissionType::direct) {
@@ -107,24 +135,28 @@ void validate_added_mass(const Design<double>& d, const Vehicle<double>& v) {
 
 /// What wings that pitch on a hinge need and cannot have.
 void validate_pitching(const Design<double>& d, const Vehicle<double>& v) {
-  if (!d.pitch.stiffness) {
+  const bool inertia = d.wing.pitch_inertia.has_value(), product = d.wing.mass_product.has_value();
+  if (follows_pitch_law(d)) {
+    if (inertia || product) {
+      throw ParameterError(inertia ? pitch_key::pitch_inertia.path : pitch_key::mass_product.path,
+                           "is for wings that pitch or twist; give pitch.stiffness or wing.torsion.stiffness");
+    }
     if (d.aerodynamics.coefficients_name != normal_force_set) return;
     throw ParameterError("aerodynamics.coefficients",
                          std::string(normal_force_set) +
                              " is for wings that pitch on a hinge; give pitch.stiffness, or translational-2022");
   }
-  const char* key = pitch_key::stiffness.path;
+  const char* key = d.pitch.stiffness ? pitch_key::stiffness.path : torsion_key::stiffness.path;
   if (d.wing.planform.shape == PlanformShape::moments) {
     throw ParameterError(key, "needs the wing's outline: give a planform with a shape");
   }
-  const bool inertia = d.wing.pitch_inertia.has_value(), product = d.wing.mass_product.has_value();
   if (d.wing.areal_density && (inertia || product)) {
     throw ParameterError(inertia ? pitch_key::pitch_inertia.path : pitch_key::mass_product.path,
                          "follows from wing.areal_density; give one of them");
   }
   if (!d.wing.areal_density && !(inertia && product)) {
     throw ParameterError(inertia ? pitch_key::mass_product.path : pitch_key::pitch_inertia.path,
-                         "missing: wings that pitch on a hinge need pitch_inertia and mass_product, or areal_density");
+                         "missing: wings that pitch or twist need pitch_inertia and mass_product, or areal_density");
   }
   validate(v.pitch, v.wing_count * v.wing_inertia);
 }
@@ -146,6 +178,8 @@ void validate(const Design<double>& d) {
     }
   }
   if (d.supply.type == SupplyType::battery_sine) validate_bridge(d);
+  if (d.piezo.force_per_volt) validate_piezo(d);
+  else if (d.electronics.efficiency) validate_electronics(d);
 
   const TransmissionType type = d.transmission.type;
   if (d.masses.rod_linear_density && !rod_length(d.transmission)) {

@@ -73,15 +73,35 @@ struct Pitching {
   static constexpr std::string_view text = "pitch.stiffness";
   static constexpr bool holds(const auto& d) { return d.pitch.stiffness.has_value(); }
 };
-/// Pitching, for rows that stand before the stiffness in the table.
-struct PitchingWing : Pitching {
+/// Of wings that pitch or twist, for rows that stand before those stiffnesses in the table: validate() refuses it
+/// elsewhere.
+struct PitchingWing {
+  static constexpr std::string_view text = {};
   static constexpr bool holds(const auto&) { return true; }
 };
-/// Without a pitch hinge. No choice of its own: the file reader refuses what set() does.
+/// Without a pitch hinge or torsion. No choice of its own: the file reader refuses what set() does.
 struct UnderPitchLaw {
   static constexpr std::string_view text = {};
-  static constexpr std::string_view required_unless = Pitching::text;
-  static constexpr bool holds(const auto& d) { return !Pitching::holds(d); }
+  static constexpr std::string_view required_unless = "pitch.stiffness|wing.torsion.stiffness";
+  static constexpr bool holds(const auto& d) { return follows_pitch_law(d); }
+};
+struct Twisting {
+  static constexpr std::string_view text = "wing.torsion.stiffness";
+  static constexpr bool holds(const auto& d) { return d.wing.torsion.stiffness.has_value(); }
+};
+struct PiezoDriven {
+  static constexpr std::string_view text = "piezo.force_per_volt";
+  static constexpr bool holds(const auto& d) { return d.piezo.force_per_volt.has_value(); }
+};
+/// With a motor, as all are that no piezo drives.
+struct Motorised {
+  static constexpr std::string_view text = {};
+  static constexpr std::string_view required_unless = PiezoDriven::text;
+  static constexpr bool holds(const auto& d) { return !PiezoDriven::holds(d); }
+};
+struct Brushless {
+  static constexpr std::string_view text = "electronics.efficiency";
+  static constexpr bool holds(const auto& d) { return d.electronics.efficiency.has_value(); }
 };
 struct Heated {
   static constexpr std::string_view text = "motor.thermal_resistance_winding";

@@ -19,6 +19,7 @@ std::span<const Parameter<S>> parameter_table() {
   using D = Design<S>;
   using detail::alternative, detail::battery_voltage, detail::choice, detail::friction_number, detail::number,
       detail::replaceable, detail::row, detail::table, detail::text, detail::wave_number;
+  using detail::Brushless, detail::Motorised, detail::PiezoDriven, detail::Twisting;
   using detail::Drawn, detail::FormulationChoice, detail::FrictionChoice, detail::Geared, detail::Heated,
       detail::Pitching, detail::PitchingWing, detail::ShapeChoice, detail::ShapeIs, detail::SupplyChoice,
       detail::SupplyIs, detail::TransmissionChoice, detail::TransmissionIs, detail::UnderPitchLaw, detail::Weighed,
@@ -71,6 +72,8 @@ std::span<const Parameter<S>> parameter_table() {
                          [](auto& d) -> auto& { return d.supply.voltage; }),
       number<S, Sine>(row(supply_key::amplitude, "required", "amplitude of the sine", {}, "3 V"),
                       [](auto& d) -> auto& { return d.supply.voltage; }),
+      number<S, Sine>(row(supply_key::offset, "0 V", "V_0, constant part of the voltage beside the sine"),
+                      [](auto& d) -> auto& { return d.supply.offset; }),
       replaceable<S, Periodic>(
           row(supply_key::frequency, "required", "drive frequency (sine) or switching frequency (pwm)",
               {"resonance_ratio"}, "22 Hz"),
@@ -121,52 +124,65 @@ std::span<const Parameter<S>> parameter_table() {
                                {"specific_energy"}},
                               supply_mass, specific_energy),
 
-      number<S>({"motor.gear_ratio", "1", range::positive, "none: constants at the output shaft",
-                 "n, motor turns per output turn; given, the motor constants below are the motor shaft's"},
-                [](auto& d) -> auto& { return d.motor.gear_ratio; }),
+      number<S, Motorised>({"motor.gear_ratio", "1", range::positive, "none: constants at the output shaft",
+                            "n, motor turns per output turn; given, the motor constants below are the motor shaft's"},
+                           [](auto& d) -> auto& { return d.motor.gear_ratio; }),
       number<S, Geared>({"motor.gear_inertia", "kg m2", range::not_negative, "0 kg m2",
                          "J_G, inertia of the gearbox at the output shaft"},
                         [](auto& d) -> auto& { return d.motor.gear_inertia; }),
       number<S, Geared>({"motor.gear_damping", "N m s/rad", range::not_negative, "0 N m s/rad",
                          "b_G, viscous damping of the gearbox at the output shaft"},
                         [](auto& d) -> auto& { return d.motor.gear_damping; }),
-      Parameter<S>{row(motor_key::gear_efficiency, "1",
+      Parameter<S>{detail::placed<Motorised>(row(
+                       motor_key::gear_efficiency, "1",
                        "eta, torque behind the gearbox over torque before it while the motor drives; 1/eta while the "
-                       "load drives"),
+                       "load drives")),
                    [](Design<S>& d, const S& x) {
+                     if (!Motorised::holds(d)) return false;
                      d.motor.constants.gear_efficiency = x;  // what is referred to the output shaft keeps it
                      d.motor.gear_efficiency = x;
                      return true;
                    },
                    [](const Design<S>& d) -> std::optional<S> { return d.motor.gear_efficiency; }},
-      number<S>(row(motor_key::armature_resistance, "required", "R_a, armature resistance", {}, "9 ohm"),
-                [](auto& d) -> auto& { return d.motor.constants.armature_resistance; }),
-      number<S>(
+      number<S, Motorised>(row(motor_key::armature_resistance, "required", "R_a, armature resistance", {}, "9 ohm"),
+                           [](auto& d) -> auto& { return d.motor.constants.armature_resistance; }),
+      number<S, Motorised>(
           row(motor_key::armature_inductance, "required",
               "L_a, armature inductance; 0, or a lag of the current below 1e-9 rad, makes it algebraic", {}, "29 mH"),
           [](auto& d) -> auto& { return d.motor.constants.armature_inductance; }),
-      number<S>(row(motor_key::torque_constant, "required",
-                    "K at the output shaft; K_b at the motor shaft with gear_ratio", {}, "10 mN m/A"),
-                [](auto& d) -> auto& { return d.motor.constants.torque_constant; }),
-      number<S>(row(motor_key::inertia, "required",
-                    "J, rotor and gearbox at the output shaft; J_m of the rotor with gear_ratio", {}, "1.5e-7 kg m2"),
-                [](auto& d) -> auto& { return d.motor.constants.inertia; }),
-      number<S>(
+      number<S, Motorised>(row(motor_key::torque_constant, "required",
+                               "K at the output shaft; K_b at the motor shaft with gear_ratio", {}, "10 mN m/A"),
+                           [](auto& d) -> auto& { return d.motor.constants.torque_constant; }),
+      number<S, Motorised>(
+          row(motor_key::inertia, "required",
+              "J, rotor and gearbox at the output shaft; J_m of the rotor with gear_ratio", {}, "1.5e-7 kg m2"),
+          [](auto& d) -> auto& { return d.motor.constants.inertia; }),
+      number<S, Motorised>(
           row(motor_key::viscous_damping, "required",
               "b, motor and gearbox at the output shaft; b_m of the motor with gear_ratio", {}, "3.6e-6 N m s/rad"),
           [](auto& d) -> auto& { return d.motor.constants.viscous_damping; }),
-      number<S>(
+      number<S, Motorised>(
           row(motor_key::friction_torque, "0 N m",
               "constant friction torque of the motor itself, before its gearbox, at the motor shaft with gear_ratio; "
               "in addition to every friction law, and it heats the motor"),
           [](auto& d) -> auto& { return d.motor.constants.friction_torque; }),
+      number<S, Motorised>(
+          row({"motor.core_torque", "N m", range::not_negative}, "0 N m",
+              "c_h, hysteresis of a brushless motor's core: a constant torque against its speed, at the "
+              "motor shaft with gear_ratio; counts as the motor's own friction"),
+          [](auto& d) -> auto& { return d.motor.core_torque; }),
+      number<S, Motorised>(row({"motor.core_damping", "N m s/rad", range::not_negative}, "0 N m s/rad",
+                               "c_e, eddy currents of a brushless motor's core: a torque that grows with the speed, at "
+                               "the motor shaft with gear_ratio; counts as viscous damping"),
+                           [](auto& d) -> auto& { return d.motor.core_damping; }),
       number<S, Weighed>({"motor.mass", "kg", range::not_negative, "none: in vehicle.mass",
                           "mass of one motor with its gearbox, in addition to vehicle.mass"},
                          [](auto& d) -> auto& { return d.masses.motor; }),
 
-      number<S>(row(motor_thermal_key::resistance_winding, "none: constants the same at any load",
-                    "R_th1, thermal resistance from winding to case; given, the constants follow the temperatures"),
-                [](auto& d) -> auto& { return d.motor.thermal.resistance_winding; }),
+      number<S, Motorised>(
+          row(motor_thermal_key::resistance_winding, "none: constants the same at any load",
+              "R_th1, thermal resistance from winding to case; given, the constants follow the temperatures"),
+          [](auto& d) -> auto& { return d.motor.thermal.resistance_winding; }),
       number<S, Heated>(
           row(motor_thermal_key::resistance_case, "required", "R_th2, thermal resistance from case to air"),
           [](auto& d) -> auto& { return d.motor.thermal.resistance_case; }),
@@ -192,6 +208,62 @@ std::span<const Parameter<S>> parameter_table() {
       number<S, Heated>(row(motor_thermal_key::time_constant_case, "none",
                             "tau_c, of the case over the air, for `wingbeat endurance`"),
                         [](auto& d) -> auto& { return d.motor.thermal.time_constant_case; }),
+
+      number<S, Motorised>(row(electronics_key::efficiency, "none: no electronics",
+                               "eta_esc of a brushless motor's electronics, input over what the motor takes; given, no "
+                               "current flows back into the supply"),
+                           [](auto& d) -> auto& { return d.electronics.efficiency; }),
+      number<S, Brushless>(
+          row(electronics_key::current_max, "none", "i_max to which they limit the current of one motor"),
+          [](auto& d) -> auto& { return d.electronics.current_max; }),
+      text<S, Brushless>({"electronics.regeneration",
+                          "",
+                          {"true or false"},
+                          "false",
+                          "current may flow back: where the back-EMF exceeds the voltage the motor brakes"},
+                         [](const D& d) {
+                           if (!Brushless::holds(d)) return std::string();
+                           return std::string(d.electronics.regenerates ? "true" : "false");
+                         }),
+
+      Parameter<S>{
+          row(piezo_key::force_per_volt, "none: a motor",
+              "kappa of a piezo bimorph that swings the wings in the place of a motor: force at its tip per volt"),
+          [](Design<S>& d, const S& x) {
+            d.piezo.force_per_volt = d.piezo.constants.force_per_volt = x;
+            return true;
+          },
+          [](const Design<S>& d) -> std::optional<S> { return d.piezo.force_per_volt; }},
+      number<S, PiezoDriven>(
+          row(piezo_key::voltage_factor, "0 1/V", "kappa_1: the force grows as kappa (1 + kappa_1 abs(V)) V"),
+          [](auto& d) -> auto& { return d.piezo.constants.voltage_factor; }),
+      number<S, PiezoDriven>(row(piezo_key::stiffness, "required", "k_a of the bimorph at its tip"),
+                             [](auto& d) -> auto& { return d.piezo.constants.stiffness; }),
+      number<S, PiezoDriven>(row(piezo_key::damping, "0 N s/m", "c_a of the bimorph at its tip"),
+                             [](auto& d) -> auto& { return d.piezo.constants.damping; }),
+      number<S, PiezoDriven>(row(piezo_key::mass, "required", "m_a, mass that moves with the tip"),
+                             [](auto& d) -> auto& { return d.piezo.constants.mass; }),
+      number<S, PiezoDriven>(row(piezo_key::capacitance, "0 F", "C of the bimorph"),
+                             [](auto& d) -> auto& { return d.piezo.constants.capacitance; }),
+      number<S, PiezoDriven>(row(piezo_key::loss_tangent, "0", "tan d of its dielectric"),
+                             [](auto& d) -> auto& { return d.piezo.constants.loss_tangent; }),
+      number<S, PiezoDriven>(row(piezo_key::recovered_share, "1",
+                                 "share of the energy that the capacitance gives back in a cycle which the electronics "
+                                 "recover"),
+                             [](auto& d) -> auto& { return d.piezo.constants.recovered_share; }),
+      number<S, PiezoDriven>(row(piezo_key::transmission_ratio, "required",
+                                 "T_1: stroke angle over tip displacement, beta = T_1 x + T_3 x^3"),
+                             [](auto& d) -> auto& { return d.piezo.constants.transmission_ratio; }),
+      number<S, PiezoDriven>(row(piezo_key::transmission_cubic, "0 rad/m3", "T_3 of the transmission"),
+                             [](auto& d) -> auto& { return d.piezo.constants.transmission_cubic; }),
+      Parameter<S>{detail::placed<PiezoDriven>(
+                       row(piezo_key::series_stiffness, "none: rigid", "k_s between the tip and the transmission")),
+                   [](Design<S>& d, const S& x) {
+                     if (!PiezoDriven::holds(d)) return false;
+                     d.piezo.series_stiffness = d.piezo.constants.series_stiffness = x;
+                     return true;
+                   },
+                   [](const Design<S>& d) -> std::optional<S> { return d.piezo.series_stiffness; }},
 
       choice<S, TransmissionChoice>(
           "kind of mechanism between motor and wings; direct: the motor shaft is the wing hinge"),
@@ -329,13 +401,20 @@ std::span<const Parameter<S>> parameter_table() {
                        [](auto& d) -> auto& { return d.wing.rib_count; }),
       number<S, PitchingWing>(
           row(pitch_key::pitch_inertia, "from areal_density",
-              "I_psi = integral x^2 dm of one wing about its leading edge; given with mass_product, or "
-              "both follow from areal_density"),
+              "I_psi = integral x^2 dm of one wing about its leading edge, where it pitches or twists; given with "
+              "mass_product, or both follow from areal_density"),
           [](auto& d) -> auto& { return d.wing.pitch_inertia; }),
       number<S, PitchingWing>(
           row(pitch_key::mass_product, "from areal_density",
               "P = integral r x dm of one wing, r from the flapping hinge, x behind the leading edge"),
           [](auto& d) -> auto& { return d.wing.mass_product; }),
+      number<S>(
+          row(torsion_key::stiffness, "none: no twist",
+              "k_tau, torsion of one wing along its span: twist of the tip against the root, linear between; given, "
+              "it is a degree of freedom, beside the pitch hinge or in its place"),
+          [](auto& d) -> auto& { return d.wing.torsion.stiffness; }),
+      number<S, Twisting>(row(torsion_key::damping, "0 N m s/rad", "c_tau of one wing"),
+                          [](auto& d) -> auto& { return d.wing.torsion.damping; }),
       choice<S, ShapeChoice>("how the wing's outline is given", name_of(semi_ellipse)),
       number<S, Outline>(row(planform_key::length, "required", "R, wing root to tip", {}, "63 mm"),
                          [](auto& d) -> auto& { return d.wing.planform.length; }),
@@ -379,6 +458,8 @@ std::span<const Parameter<S>> parameter_table() {
       number<S, Pitching>(
           row(pitch_key::stop, "none", "psi_max, pitch angle to either side at which stops hold the wing"),
           [](auto& d) -> auto& { return d.pitch.stop; }),
+      number<S, Pitching>(row(pitch_key::friction, "0 N m", "T_psi, constant friction of one hinge's joint"),
+                          [](auto& d) -> auto& { return d.pitch.friction; }),
       text<S, Pitching>({"pitch.rotational_lift",
                          "",
                          {"true or false"},

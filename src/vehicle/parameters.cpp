@@ -61,7 +61,8 @@ std::string default_text(const ParameterText& parameter) {
   if (const std::string_view other = parameter.required_unless; is_section(other)) {
     text += " unless " + std::string(leaf_of(other)) + " is a name";
   } else if (!other.empty()) {
-    text += " unless " + std::string(other);
+    text += " unless ";
+    for (const char c : other) text += c == '|' ? std::string(" or ") : std::string(1, c);
   }
   return text;
 }

@@ -42,6 +42,7 @@ const std::vector<std::string> contract_keys = {"status",
                                                 "power_viscous_w",
                                                 "power_motor_friction_w",
                                                 "power_gear_w",
+                                                "power_electronics_w",
                                                 "power_loss_w",
                                                 "power_residual_w",
                                                 "lift_mean_n",
@@ -92,8 +93,8 @@ TEST_F(Run, JsonIsOneObjectWithTheContractsKeysAndNothingElse) {
     const std::string& key = contract_keys[k];
     const bool option = key.find("temperature") != std::string::npos || key == "added_mass_inertia_ratio" ||
                         key == "lift_added_mass_share" || key.find("pitch") == 0 || key == "power_hinge_w" ||
-                        key == "angle_of_attack_max_deg" || key == "reynolds_number" || key == "hover_s" ||
-                        key == "endurance_s";
+                        key == "power_electronics_w" || key == "angle_of_attack_max_deg" || key == "reynolds_number" ||
+                        key == "hover_s" || key == "endurance_s";
     EXPECT_EQ(json[key].is_number(), !option) << key;
   }
   EXPECT_EQ(json["voltage_v"], 3.0);

@@ -126,7 +126,8 @@ TEST_F(Sweep, EachDesignIsWhatARunOfItGives) {
       const bool pitching = key.starts_with("pitch_") || key == "power_hinge_w" || key == "angle_of_attack_max_deg";
       const bool option = pitching || key.find("temperature") != std::string_view::npos ||
                           key == "added_mass_inertia_ratio" || key == "lift_added_mass_share" ||
-                          key == "reynolds_number" || key == "hover_s" || key == "endurance_s";
+                          key == "power_electronics_w" || key == "reynolds_number" || key == "hover_s" ||
+                          key == "endurance_s";
       if (json[metric.key].is_null() && option) continue;
       const double swept = file.read(metric.key)[n];
       if (json[metric.key].is_null()) {

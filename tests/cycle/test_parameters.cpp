@@ -46,6 +46,11 @@ std::vector<Design<double>> designs_of_every_kind() {
         d.wing.areal_density = 0.02;
         if (transmission == TransmissionType::direct) d.pitch.stiffness = 3e-4;
         designs.push_back(d);
+        Design<double> further = d;
+        further.wing.torsion.stiffness = 1e-3;
+        if (transmission == TransmissionType::direct) further.piezo.force_per_volt = 1e-3;
+        else further.electronics.efficiency = 0.9;
+        designs.push_back(further);
       }
     }
   }
@@ -187,8 +192,8 @@ TEST(Parameters, NearestKey) {
   EXPECT_EQ(unknown_key_message("spring.damper"),
             "unknown key; [spring] knows stiffness, resonance, resonance_ratio, mass");
   EXPECT_EQ(unknown_key_message("battery"),
-            "unknown key; the sections are [vehicle], [supply], [motor], [transmission], [friction], [spring], [wing], "
-            "[pitch], [aerodynamics], [bench]");
+            "unknown key; the sections are [vehicle], [supply], [motor], [electronics], [piezo], [transmission], "
+            "[friction], [spring], [wing], [pitch], [aerodynamics], [bench]");
 }
 
 }  // namespace

@@ -32,7 +32,11 @@ Vehicle<double> generic_vehicle(Formulation formulation) {
   v.thermal = {20.0, 48.0, 303.0, 298.0, 3.9e-3, -1e-3, 358.0};
   v.drive_frequency = 22.0;
   v.load_torque = 2e-5;
-  v.pitch.hinge = {3e-4, 2e-8, 0.8};
+  v.pitch.hinge = {3e-4, 2e-8, 0.8, 1e-6};
+  v.pitch.torsion = {2e-4, 1e-8, 0.063, 0.025, 0.004, 2.0, {}};
+  v.voltage_offset = 0.3;
+  v.electronics = {0.9, 20.0, true};
+  v.piezo = {4e-4, 1e-3, 240.0, 0.02, 6e-6, 1e-8, 0.02, 0.4, 2666.0, 1e9, 1e3};
   v.pitch.pitch_inertia = 6e-9;
   v.pitch.mass_product = 1e-8;
   v.pitch.moments = {1.2e-6, 4.2e-8, 1.2e-6, 2.5e-8, 2.6e-8};

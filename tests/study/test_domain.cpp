@@ -82,7 +82,7 @@ TEST(Domain, StrokeOfTheTanLaw) {
 }
 
 /// A direct drive with wings of that shape, so many of them on so many motors.
-Design<double> direct_design(const Planform<double>& planform, double motors, double wings) {
+Design<double> direct_design_with(const Planform<double>& planform, double motors, double wings) {
   Design<double> d = reference_design();
   d.transmission = {};
   d.transmission.type = TransmissionType::direct;
@@ -109,28 +109,28 @@ TEST(Domain, StrokeOfADirectDrive) {
   };
   // A wing alone may turn until it is back at its own start.
   const Planform<double> moments = reference_design().wing.planform;
-  EXPECT_EQ(domain_at(179.0, direct_design(moments, 1.0, 1.0)), "inside");
-  EXPECT_EQ(domain_at(181.0, direct_design(moments, 1.0, 1.0)), "stroke");
+  EXPECT_EQ(domain_at(179.0, direct_design_with(moments, 1.0, 1.0)), "inside");
+  EXPECT_EQ(domain_at(181.0, direct_design_with(moments, 1.0, 1.0)), "stroke");
   // Two on one body meet at 90 deg, whether one motor drives both or each its own.
   for (const auto& [motors, wings] : {std::pair{1.0, 2.0}, {2.0, 1.0}, {2.0, 2.0}}) {
-    EXPECT_EQ(domain_at(89.9, direct_design(moments, motors, wings)), "inside");
-    EXPECT_EQ(domain_at(90.1, direct_design(moments, motors, wings)), "stroke");
-    EXPECT_EQ(domain_at(171.7, direct_design(moments, motors, wings)), "stroke");
+    EXPECT_EQ(domain_at(89.9, direct_design_with(moments, motors, wings)), "inside");
+    EXPECT_EQ(domain_at(90.1, direct_design_with(moments, motors, wings)), "stroke");
+    EXPECT_EQ(domain_at(171.7, direct_design_with(moments, motors, wings)), "stroke");
   }
   // Shoulders apart leave room: the tips, 70 mm from the hinges, meet 10 deg beyond.
   Planform<double> apart = paper_ellipse(7e-3);
   apart.shoulder_distance = 2.0 * 70e-3 * std::sin(10.0 / degrees_per_radian);
-  EXPECT_EQ(domain_at(99.9, direct_design(apart, 1.0, 2.0)), "inside");
-  EXPECT_EQ(domain_at(100.1, direct_design(apart, 1.0, 2.0)), "stroke");
+  EXPECT_EQ(domain_at(99.9, direct_design_with(apart, 1.0, 2.0)), "inside");
+  EXPECT_EQ(domain_at(100.1, direct_design_with(apart, 1.0, 2.0)), "stroke");
   apart.shoulder_distance = 0.15;
-  EXPECT_EQ(domain_at(179.0, direct_design(apart, 1.0, 2.0)), "inside");
-  EXPECT_EQ(domain_at(181.0, direct_design(apart, 1.0, 2.0)), "stroke");
+  EXPECT_EQ(domain_at(179.0, direct_design_with(apart, 1.0, 2.0)), "inside");
+  EXPECT_EQ(domain_at(181.0, direct_design_with(apart, 1.0, 2.0)), "stroke");
   // Wings meet without air as well, and not where there are none.
   Metrics<double> m = ordinary_metrics();
   m[Metric::stroke_amplitude] = 171.7 / degrees_per_radian;
-  EXPECT_EQ(name_of(domain_of(resolve(direct_design(moments, 1.0, 2.0), Condition::vacuum), m)), "stroke");
-  EXPECT_EQ(name_of(domain_of(resolve(direct_design(moments, 1.0, 2.0), Condition::wingless), m)), "inside");
-  const std::vector<DomainEvidence> rows = domain_evidence(resolve(direct_design(moments, 1.0, 2.0)), m);
+  EXPECT_EQ(name_of(domain_of(resolve(direct_design_with(moments, 1.0, 2.0), Condition::vacuum), m)), "stroke");
+  EXPECT_EQ(name_of(domain_of(resolve(direct_design_with(moments, 1.0, 2.0), Condition::wingless), m)), "inside");
+  const std::vector<DomainEvidence> rows = domain_evidence(resolve(direct_design_with(moments, 1.0, 2.0)), m);
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].quantity, DomainEvidence::Quantity::wings_meet);
   EXPECT_NEAR(rows[0].highest, 90.0, 1e-12);
@@ -162,7 +162,7 @@ TEST(Domain, ReynoldsNumber) {
     m[Metric::reynolds_number] = Re;
     return name_of(domain_of(resolve(d, condition), m));
   };
-  Design<double> d = direct_design(paper_ellipse(), 1.0, 2.0);
+  Design<double> d = direct_design_with(paper_ellipse(), 1.0, 2.0);
   EXPECT_EQ(domain_at(101.0, d), "inside");
   EXPECT_EQ(domain_at(99.0, d), "reynolds_number");
   EXPECT_EQ(domain_at(25900.0, d), "inside");
@@ -191,7 +191,7 @@ TEST(Domain, ReynoldsNumber) {
 
   Metrics<double> m = ordinary_metrics();
   m[Metric::reynolds_number] = 0.42;
-  const std::vector<DomainEvidence> rows = domain_evidence(resolve(direct_design(paper_ellipse(), 1.0, 2.0)), m);
+  const std::vector<DomainEvidence> rows = domain_evidence(resolve(direct_design_with(paper_ellipse(), 1.0, 2.0)), m);
   EXPECT_EQ(describe(rows), "the Reynolds number is 0.42 (the coefficients hold from 100 to 26000)");
 }
 

@@ -178,7 +178,7 @@ TEST(DirectDrive, FreeSwingsLoseTwoFrictionAnglesEachAndStick) {
   const Vehicle<double> v = resolve(d, Condition::vacuum);
   TransientOptions options;
   options.tolerance = 1e-9;
-  options.crank_angle = 0.3;
+  options.start.angle = 0.3;
   const TransientResult r = simulate_start_up(v, options);
   const double step = 2.0 * 3e-5 / (2.0 * v.spring.stiffness);
   std::vector<TransientEvent> turns;

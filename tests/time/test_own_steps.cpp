@@ -36,7 +36,7 @@ TEST(OwnSteps, FollowAFreeDecay) {
     const FreeDecay exact(omega_0);
     TransientOptions options;
     options.tolerance = 1e-10;
-    options.crank_speed = omega_0;
+    options.start.speed = omega_0;
     const TransientResult r = by_own_steps(exact.vehicle, options);
     EXPECT_EQ(r.status, FlappingStatus::stalled) << describe(r.evidence);
     EXPECT_NEAR(r.end_time / exact.end_time, 1.0, 1e-9);

@@ -41,8 +41,8 @@ inline AnyStart any_start(unsigned seed) {
   v.wings.s2 = between(1e-7, 1e-5);
   v.wings.s3 = between(1e-9, 1e-6);
   any.options.max_steps = 200000;
-  if (chance(0.2)) any.options.crank_speed = 1000.0 * (uniform(generator) - 0.5);
-  if (chance(0.2)) any.options.crank_angle = 10.0 * (uniform(generator) - 0.5);
+  if (chance(0.2)) any.options.start.speed = 1000.0 * (uniform(generator) - 0.5);
+  if (chance(0.2)) any.options.start.angle = 10.0 * (uniform(generator) - 0.5);
   if (chance(0.1)) any.options.supply = Supply<double>{SupplyType::pwm, v.voltage, between(100.0, 2000.0), 0.6};
   return any;
 }

@@ -1,4 +1,4 @@
-// Seven wide boxes of random vehicles on top of wide_boxes.hpp: parts whose losses, events and statuses earlier boxes
+// Nine wide boxes of random vehicles on top of wide_boxes.hpp: parts whose losses, events and statuses earlier boxes
 // exercise little.
 #pragma once
 
@@ -14,10 +14,12 @@ enum class FurtherBox {
   pwm,              ///< switched supplies
   tiny_inductance,  ///< electrical lags far below an angle that matters
   long_cranks,      ///< hinges beside a long crank, where levers grow and fall within a few degrees
-  direct_losses     ///< direct drives: constant friction, friction by the load, lossy gearboxes, wings on hinges or not
+  direct_losses,    ///< direct drives: constant friction, friction by the load, lossy gearboxes, wings on hinges or not
+  soft_wings,       ///< wings that twist, with hinges and without, and hinges with friction, on every transmission
+  actuators         ///< brushless motors behind electronics, and piezos, rigid and compliant
 };
-inline constexpr std::array<std::string_view, 7> further_box_names = {
-    "stops", "gear", "heat", "pwm", "tiny_inductance", "long_cranks", "direct_losses"};
+inline constexpr std::array<std::string_view, 9> further_box_names = {
+    "stops", "gear", "heat", "pwm", "tiny_inductance", "long_cranks", "direct_losses", "soft_wings", "actuators"};
 
 /// A vehicle as drawn, which need not be a valid one.
 inline WideVehicle drawn_further_vehicle(FurtherBox box, std::uint32_t n, std::uint32_t seed = 12) {
@@ -98,6 +100,56 @@ inline WideVehicle drawn_further_vehicle(FurtherBox box, std::uint32_t n, std::u
       if (kind > 0.6) add(drawn, ModelOption::gear);
       if (kind < 0.4 || chance(0.5)) put_on_hinges(d);
       if (d.pitch.stiffness && chance(0.3)) d.pitch.stop = uniform(0.05, 1.2);
+      break;
+    }
+    case FurtherBox::soft_wings: {
+      drawn = base(4);
+      Design<double>& d = drawn.design;
+      put_on_hinges(d);
+      const double kind = uniform(0.0, 1.0), stiffness = *d.pitch.stiffness;
+      if (kind < 0.7) {
+        d.wing.torsion = {stiffness * logarithmic(0.3, 10.0), uniform(0.0, 1.0) * d.pitch.damping};
+        if (kind < 0.3) d.pitch.stiffness.reset();
+      }
+      if (kind > 0.5) d.pitch.friction = stiffness * logarithmic(1e-3, 0.1);
+      if (d.pitch.stiffness && chance(0.3)) d.pitch.stop = uniform(0.1, 1.2);
+      break;
+    }
+    case FurtherBox::actuators: {
+      if (chance(0.5)) {
+        drawn = base(3);
+        Design<double>& d = drawn.design;
+        d.electronics.efficiency = uniform(0.7, 1.0);
+        const double stalled = d.supply.voltage / d.motor.constants.armature_resistance;
+        if (chance(0.5)) d.electronics.current_max = stalled * uniform(0.1, 0.9);
+        if (chance(0.3)) put_on_hinges(d);
+        break;
+      }
+      drawn = wide_vehicle(FarBox::direct, n, seed + 1);
+      Design<double>& d = drawn.design;
+      if (chance(0.5)) put_on_hinges(d);
+      // The torque that the motor gave at rest, from a tip that moves half a millimetre for a radian.
+      const double ratio = 2000.0 * logarithmic(0.5, 2.0), V = 100.0;
+      const double torque =
+          d.motor.constants.torque_constant * d.supply.voltage / d.motor.constants.armature_resistance;
+      const Vehicle<double> v = resolve(d);
+      d.piezo.force_per_volt = torque * ratio / V;
+      d.piezo.constants.transmission_ratio = ratio;
+      d.piezo.constants.mass = d.motor.constants.inertia * square(ratio);
+      d.piezo.constants.stiffness = uniform(0.3, 1.0) * v.wing_count * v.spring.stiffness * square(ratio) + 1.0;
+      d.piezo.constants.damping = d.motor.constants.viscous_damping * square(ratio);
+      d.piezo.constants.capacitance = logarithmic(1e-9, 1e-7);
+      d.piezo.constants.loss_tangent = uniform(0.0, 0.03);
+      d.piezo.constants.recovered_share = uniform(0.0, 1.0);
+      if (chance(0.4)) d.piezo.constants.transmission_cubic = ratio * square(ratio) * logarithmic(1e-2, 1.0);
+      if (chance(0.4)) d.piezo.series_stiffness = d.piezo.constants.stiffness * logarithmic(2.0, 20.0);
+      if (chance(0.3)) d.piezo.constants.voltage_factor = logarithmic(1e-4, 3e-3);
+      d.motor = {};
+      d.spring = {v.spring.stiffness, {}, {}};
+      d.wing.resonance.reset();
+      if (!d.wing.areal_density) d.wing.inertia = v.wing_inertia;
+      d.supply = {SupplyType::sine, V, v.drive_frequency, 1.0, {}, chance(0.5) ? uniform(0.0, V) : 0.0};
+      d.supply_resonance_ratio.reset();
       break;
     }
   }

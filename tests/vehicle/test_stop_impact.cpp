@@ -5,7 +5,7 @@
 #include <random>
 
 #include "vehicle/hinged_design.hpp"
-#include "wingbeat/vehicle/dynamics.hpp"
+#include "wingbeat/vehicle/impact.hpp"
 #include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {

@@ -86,6 +86,10 @@ Answer run(const WideVehicle& vehicle, Method method) {
 /// accurate to it beside the blocked motor's, and of a vehicle that takes next to nothing those alone can be compared.
 double least_power(const WideVehicle& w) {
   const Vehicle<double> v = resolve(w.design, w.condition);
+  if (is_given(v.piezo)) {
+    const Piezo<double>& p = v.piezo;
+    return 1e-3 * square(p.force_per_volt * v.voltage) / std::sqrt(p.stiffness * p.mass);
+  }
   return 1e-3 * v.motors * square(v.voltage) / circuit_resistance(v);
 }
 
@@ -97,7 +101,7 @@ double open_share(const Metrics<double>& m, double least) {
                       std::abs(a.residual) + least;
   const double share = std::abs(a.imbalance) / size;
   // Motor output is what the input leaves after the motor's own losses and the gearbox; losses are not negative.
-  const double motor = a.electrical - a.copper - a.viscous - a.motor_friction - a.gear;
+  const double motor = a.electrical - a.electronics - a.copper - a.viscous - a.motor_friction - a.gear;
   const double output = std::abs(m[Metric::power_motor] - motor) / size;
   const double negative = -std::min({0.0, a.copper, a.viscous, a.motor_friction, a.gear, a.friction, a.hinge}) / size;
   return std::max({share, output, negative});

@@ -219,7 +219,14 @@ class CycleGradient {
         which = before.signs[System::slip] > 0.0 ? System::velocity : System::release;
       }
     }
-    if (impact_before(n) || before.signs[System::held] != after.signs[System::held]) which = System::stop;
+    if (before.signs[System::held] != after.signs[System::held]) {
+      which = before.signs[System::held] > 0.0 ? System::turn : System::stop;
+    }
+    if (impact_before(n)) which = System::stop;
+    if constexpr (System::general) {
+      if (before.signs[System::blocked] != after.signs[System::blocked]) which = System::bridge;
+      if (before.signs[System::limited] != after.signs[System::limited]) which = System::limit;
+    }
     if (which == switches) return W(0.0);
     const JetState& y = ends_[n - 1];
     const auto signs = solver::signs_of<Jets>(before);
@@ -256,17 +263,16 @@ class CycleGradient {
   W pitch_at_start(std::size_t n) const
     requires pitching
   {
-    constexpr std::size_t psi = System::pitch;
-    if (n == cycle_.steps.size()) return ends_.back()[psi];
+    if (n == cycle_.steps.size()) return Jets::local_pitch(ends_.back());
     if constexpr (!System::turns) {
       const auto& step = cycle_.steps[n];
       if (n > 0 && step.signs[System::velocity] != cycle_.steps[n - 1].signs[System::velocity] &&
           step.signs[System::slip] > 0.0) {
         const auto& dy = step.first.dy;
-        return starts_[n][psi] - dy[psi] / dy[System::shaft] * starts_[n][System::shaft];
+        return Jets::local_pitch(starts_[n]) - System::local_pitch(dy) / dy[System::shaft] * starts_[n][System::shaft];
       }
     }
-    return starts_[n][psi];
+    return Jets::local_pitch(starts_[n]);
   }
 
   /// Of the first harmonics in time, as in pitch_metrics().
@@ -286,8 +292,8 @@ class CycleGradient {
         const W stroke = jets_.stroke_angle(x, y);
         stroke_cosine += cosine * stroke;
         stroke_sine += sine * stroke;
-        pitch_cosine += cosine * y[System::pitch];
-        pitch_sine += sine * y[System::pitch];
+        pitch_cosine += cosine * Jets::local_pitch(y);
+        pitch_sine += sine * Jets::local_pitch(y);
       };
       // An impact changes the speed of a crank, so that the duration changes with the crank angle of the impact.
       if (n > 0) add(W(time - ended), time, W(step.x), starts_[n]);

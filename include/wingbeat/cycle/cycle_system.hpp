@@ -11,64 +11,17 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/cycle/configurations.hpp"
 #include "wingbeat/cycle/crank_turn.hpp"
+#include "wingbeat/cycle/cycle_layout.hpp"
+#include "wingbeat/cycle/electronics_events.hpp"
 #include "wingbeat/cycle/energy_balance.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/pitch_stops.hpp"
+#include "wingbeat/cycle/shaft_rest.hpp"
 #include "wingbeat/cycle/supply_period.hpp"
 #include "wingbeat/solve/iterate.hpp"
 #include "wingbeat/vehicle/dynamics.hpp"
 
 namespace wingbeat {
-
-/// Where states, signs and integrals of a CycleSystem stand.
-template <bool turns_, bool on_hinges_, bool inductive_>
-struct CycleLayout {
-  static constexpr bool turns = turns_;          ///< a crank, else a direct drive
-  static constexpr bool on_hinges = on_hinges_;  ///< the wings pitch on hinges, else under the pitch law
-  static constexpr bool inductive = inductive_;  ///< the current is a state
-
-  // States: the stroke angle of a direct drive, speed, current, pitch angle and pitch velocity.
-  static constexpr std::size_t shaft = turns ? 0 : 1;  ///< its speed [rad/s]
-  static constexpr std::size_t current_state = shaft + 1, pitch = shaft + 1 + inductive;
-  static constexpr std::size_t state_count = pitch + (on_hinges ? 2 : 0);
-
-  // Switches: of a direct drive velocity and end of a standstill; rod force and gear torque; under the pitch law its
-  // bound, on hinges pitch velocity and stop; the stored moment, which causes no kink in the solution.
-  static constexpr std::size_t velocity = 0, release = 1;
-  static constexpr std::size_t force = turns ? 0 : 2, gear = force + 1;
-  static constexpr std::size_t pitching = gear + 1;
-  static constexpr std::size_t turn = gear + 1, stop = gear + 2;
-  static constexpr std::size_t stored = on_hinges ? stop + 1 : pitching + 1;
-  static constexpr std::size_t switch_count = stored + 1;
-  static constexpr int state_switches = int(stored);
-  // Signs behind theirs: of a crank stroke velocity, which nodes flip, of a direct drive -1 where friction holds the
-  // shaft; of wings on hinges -1 where a stop holds them, and the number of impacts so far.
-  static constexpr std::size_t stroke = switch_count, slip = switch_count;
-  static constexpr std::size_t held = switch_count + 1, impacts = switch_count + 2;
-  static constexpr std::size_t sign_count = switch_count + (on_hinges ? 3 : 1);
-
-  // Integrals behind those that all vehicles have: loss in the hinges [J]; chordwise_lift() [N s].
-  static constexpr std::size_t hinge_work = integral_count, chordwise = integral_count + 1;
-  static constexpr std::size_t quadrature_count = integral_count + (on_hinges ? 2 : 0);
-
-  /// Integrals whose error limits the steps. Not those that may vanish up to rounding.
-  static constexpr auto controlled_integrals = [] {
-    std::array<std::size_t, (turns ? 5 : 6) + (on_hinges ? 1 : 0)> which{};
-    std::size_t n = 0;
-    if (turns) which[n++] = std::size_t(Integral::time);
-    if (!turns) which[n++] = std::size_t(Integral::current_square);
-    if (!turns) which[n++] = std::size_t(Integral::speed_square);
-    for (const Integral each :
-         {Integral::friction_work, Integral::aero_work, Integral::reactive_work, Integral::lift}) {
-      which[n++] = std::size_t(each);
-    }
-    if (on_hinges) which[n++] = hinge_work;
-    return which;
-  }();
-
-  static constexpr bool contracts_slowly = !turns || on_hinges;
-  static constexpr bool state_jumps = on_hinges;
-};
 
 /// The system of vehicles of one kind. A crank's is valid while omega > 0. V: a Vehicle, or what has the same members
 /// with another transmission. With the acceleration of motion_on(), and i following omega without inductance:
@@ -81,17 +34,18 @@ struct CycleLayout {
 /// \f$v = V \sin\varphi\f$. Friction that does not vanish with the speed, and a gearbox that loses torque, make its
 /// right-hand side jump where the velocity changes sign, and hold the shaft at rest between two torques of the motor
 /// (StandingTorques).
-template <Scalar S, bool turns_, bool on_hinges_, bool inductive_, class V = Vehicle<S>>
-struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
-                     std::conditional_t<turns_, CrankTurn<S>, SupplyPeriod<S>> {
-  using Layout = CycleLayout<turns_, on_hinges_, inductive_>;
-  using Base = std::conditional_t<turns_, CrankTurn<S>, SupplyPeriod<S>>;
+template <Scalar S, CycleFeatures features_, class V = Vehicle<S>>
+struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns, CrankTurn<S>, SupplyPeriod<S>> {
+  using Layout = CycleLayout<features_>;
+  using Base = std::conditional_t<features_.turns, CrankTurn<S>, SupplyPeriod<S>>;
   using Real = S;
   using State = std::array<S, Layout::state_count>;
   using Quadrature = std::array<S, Layout::quadrature_count>;
   using Switches = std::array<S, Layout::switch_count>;
   using Signs = std::array<S, Layout::sign_count>;
-  using MotionHere = std::conditional_t<on_hinges_, PitchMotion<S>, Motion<S>>;
+  using MotionHere = std::conditional_t<features_.on_hinges, PitchMotion<S>, Motion<S>>;
+  using Layout::general, Layout::features, Layout::tip, Layout::twist, Layout::local_turn, Layout::bridge;
+  using Layout::limit, Layout::blocked, Layout::limited;
   using Layout::stored, Layout::stroke, Layout::slip, Layout::held, Layout::hinge_work, Layout::chordwise;
   using Layout::turns, Layout::on_hinges, Layout::inductive, Layout::shaft, Layout::current_state, Layout::pitch;
   using Layout::velocity, Layout::release, Layout::force, Layout::gear, Layout::pitching, Layout::turn, Layout::stop;
@@ -112,7 +66,7 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     const auto of_t = wingbeat::cast<T>(vehicle);
     std::array<T, Layout::state_count> size;
     for (std::size_t n = 0; n < size.size(); ++n) size[n] = T(typical[n]);
-    return CycleSystem<T, turns, on_hinges, inductive, std::remove_const_t<decltype(of_t)>>{of_t, size, T(speed_floor)};
+    return CycleSystem<T, features, std::remove_const_t<decltype(of_t)>>{of_t, size, T(speed_floor)};
   }
 
   bool admissible(const State& y) const {
@@ -130,7 +84,7 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
   /// True where the current follows the speed so quickly, within a small part of a radian, that explicit steps would
   /// have to be shorter for it than their accuracy asks for.
   bool stiff(const State& y) const
-    requires(std::same_as<S, double> && turns_ && !on_hinges_ && inductive_)
+    requires(std::same_as<S, double> && features_.turns && !features_.on_hinges && features_.inductive)
   {
     return circuit_resistance(vehicle) > 24.0 * vehicle.motor.armature_inductance * y[0];
   }
@@ -138,7 +92,7 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
   /// How many times smaller than what limits their errors (`scale`) the integrals of a cycle are: metrics are to be
   /// accurate relative to themselves. A mean lift below a thousandth of its peak need not be.
   double cancellation(const Quadrature& totals, const Quadrature& scale) const
-    requires(std::same_as<S, double> && turns_ && !on_hinges_)
+    requires(std::same_as<S, double> && features_.turns && !features_.on_hinges)
   {
     constexpr double usual = 2.0, max_cancellation = 1e3;
     double largest = 1.0;
@@ -155,7 +109,7 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
 
   /// What the integrals of a closed cycle show of their errors, relative.
   double imbalance(const Quadrature& totals) const
-    requires(std::same_as<S, double> && !on_hinges_)
+    requires(std::same_as<S, double> && !features_.on_hinges)
   {
     return relative_energy_gap(vehicle, totals);
   }
@@ -167,12 +121,42 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     y[shaft] = c.speed;
     if constexpr (inductive) y[current_state] = c.current;
     if constexpr (on_hinges) y[pitch] = c.pitch_angle, y[pitch + 1] = c.pitch_velocity;
+    if constexpr (general) y[twist] = c.twist_angle, y[twist + 1] = c.twist_velocity;
     return y;
+  }
+  /// Those of a vehicle with a current and of one with a compliant piezo have different states in the same place.
+  static State state_of(const Coordinates<S>& c, const Vehicle<S>& v)
+    requires(features_.general)
+  {
+    State y = state_of(c);
+    if (!has_current_state(v)) y[current_state] = is_compliant(v.piezo) ? c.tip : S(0.0);
+    if constexpr (!turns) y[tip + 1] = c.tip_velocity;
+    return y;
+  }
+  /// How everything is in a state; what the vehicle does not have is 0.
+  Coordinates<S> coordinates(const S& x, const State& y) const {
+    Coordinates<S> c;
+    c.angle = turns ? x : y[0];
+    c.speed = y[shaft];
+    if constexpr (inductive) c.current = y[current_state];
+    if constexpr (on_hinges) c.pitch_angle = y[pitch], c.pitch_velocity = y[pitch + 1];
+    if constexpr (general) {
+      c.twist_angle = y[twist], c.twist_velocity = y[twist + 1];
+      if constexpr (!turns) c.tip = y[tip], c.tip_velocity = y[tip + 1];
+    }
+    return c;
+  }
+  /// Pitch of the wings where it is reported [rad], of a state or its rate.
+  static S local_pitch(const State& y)
+    requires(features_.on_hinges)
+  {
+    if constexpr (general) return y[pitch] + S(reported_station) * y[twist];
+    else return y[pitch];
   }
 
   /// Rate of the independent variable [rad/s].
   S phase_rate() const
-    requires(!turns_)
+    requires(!features_.turns)
   {
     return S(two_pi) * vehicle.drive_frequency;
   }
@@ -184,10 +168,17 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
   S voltage([[maybe_unused]] const S& x) const {
     using std::sin;
     if constexpr (turns) return vehicle.voltage;
-    else return vehicle.voltage * sin(x);
+    else return vehicle.voltage_offset + vehicle.voltage * sin(x);
+  }
+  /// Of the supply, with its rate in time.
+  SupplyMoment<S> supply([[maybe_unused]] const S& x) const {
+    using std::cos;
+    if constexpr (turns) return {vehicle.voltage};
+    else return {voltage(x), vehicle.voltage * cos(x) * phase_rate()};
   }
   S current([[maybe_unused]] const S& x, const State& y) const {
-    if constexpr (inductive) return y[current_state];
+    if constexpr (general) return instant(x, y, start_signs_at(x, y)).current;
+    else if constexpr (inductive) return y[current_state];
     else return algebraic_current(vehicle, voltage(x), y[shaft]);
   }
 
@@ -201,7 +192,11 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
 
   bool jumps([[maybe_unused]] std::size_t k) const {
     if constexpr (on_hinges) {
-      if (k == stop) return has_stop(vehicle.pitch.hinge);
+      if (k == stop) return has_stop(vehicle.pitch.hinge) || has_friction(vehicle.pitch.hinge);
+      if (k == turn) return has_friction(vehicle.pitch.hinge);
+    }
+    if constexpr (general) {
+      if (k == bridge || k == limit) return limits_current(vehicle.electronics) && has_current_state(vehicle);
     }
     if constexpr (!turns) return jumps_at_velocity && k <= release;
     return false;
@@ -216,33 +211,43 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
       signs[stroke] = S(this->first_stroke());
     } else if (on_hinges || jumps_at_velocity) {
       signs[velocity] = sign_of(y[shaft]);
-      if (jumps_at_velocity && value_of(y[shaft]) == 0.0) hold_or_move(x, y, signs);
+      if (jumps_at_velocity && value_of(y[shaft]) == 0.0) shaft_rest::hold_or_move(*this, x, y, signs);
     }
+    if constexpr (general) electronics_events::start(*this, x, y, signs);
     if constexpr (on_hinges) {
-      if (pitch_stops::rests_at_stop(*this, y)) pitch_stops::hold_or_leave(*this, x, y, signs);
+      if (has_friction(vehicle.pitch.hinge)) signs[turn] = sign_of(y[pitch + 1]);
+      if (is_clamped(vehicle.pitch.hinge)) signs[held] = S(-1.0);
+      else if (pitch_stops::rests(*this, y)) pitch_stops::hold_or_leave(*this, x, y, signs);
     }
     return signs;
   }
 
   /// Switch k is crossed. A shaft that comes to rest is held or turns back; wings meet a stop or leave it.
   void event_transition(std::size_t k, const S& x, State& y, Signs& signs) const
-    requires(!turns_ && !on_hinges_)
+    requires(!features_.turns && !features_.on_hinges)
   {
-    if (jumps(k)) rest_or_release(k, x, y, signs);
+    if (jumps(k)) shaft_rest::event_transition(*this, k, x, y, signs);
     else signs[k] = -signs[k];
   }
   void event_transition(std::size_t k, const S& x, State& y, Signs& signs, Quadrature* totals) const
-    requires on_hinges_
+    requires(features_.on_hinges)
   {
-    if (!jumps(k)) signs[k] = -signs[k];
-    else if (k == stop) pitch_stops::event_transition(*this, x, y, signs, totals);
-    else if constexpr (!turns) rest_or_release(k, x, y, signs);
+    if (!jumps(k)) {
+      signs[k] = -signs[k];
+    } else if (k == stop || k == turn) {
+      pitch_stops::event_transition(*this, k, x, y, signs, totals);
+    } else {
+      if constexpr (general) {
+        if (k == bridge || k == limit) return electronics_events::event_transition(*this, k, y, signs);
+      }
+      if constexpr (!turns) shaft_rest::event_transition(*this, k, x, y, signs);
+    }
   }
 
   /// A solution next to a recorded one that came to rest, or met a stop, at x: it does so a little earlier or later.
   template <bool quadratures>
   void reset_map(const S& x, State& y, const Signs& from, const Signs& to, Quadrature* totals) const
-    requires(!turns_ || on_hinges_)
+    requires(!features_.turns || features_.on_hinges)
   {
     reset_map_of<quadratures>(*this, x, y, from, to, totals);
   }
@@ -254,31 +259,30 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
       pitch_stops::reset_map<quadratures>(system, x, y, from, to, totals);
       if (pitch_stops::has_impact<System>(from, to)) return;
     }
+    if constexpr (general) electronics_events::reset_map<quadratures>(system, x, y, from, to, totals);
     if constexpr (!turns) {
       if (!system.jumps_at_velocity) return;
       const bool stuck = value_of(to[slip]) < 0.0;
       const bool came_to_rest =
           value_of(from[slip]) > 0.0 && (stuck || value_of(from[velocity]) != value_of(to[velocity]));
-      if (came_to_rest) {
-        const auto before = system.template rates<quadratures>(x, y, from);
-        const S late = -y[shaft] / before.dy[shaft];
-        const auto after = system.template rates<quadratures>(x, y, to);
-        for (std::size_t n = 0; n < y.size(); ++n) y[n] = y[n] + (before.dy[n] - after.dy[n]) * late;
-        if constexpr (quadratures) {
-          for (std::size_t q = 0; q < before.dq.size(); ++q) {
-            (*totals)[q] = (*totals)[q] + (before.dq[q] - after.dq[q]) * late;
-          }
-        }
-      }
+      if (came_to_rest) pitch_stops::cross_at_zero<quadratures>(system, x, y, shaft, S(y[shaft]), from, to, totals);
       if (stuck) y[shaft] = S(0.0);
     }
   }
 
+  /// The instant at which wings meet a stop; what drives does not matter to the impact.
+  auto instant_before_impact(const S& x, const State& y, [[maybe_unused]] const auto& signs) const {
+    if constexpr (general) {
+      return instant(x, y, signs);
+    } else {
+      return MotionState<S>{{kinematics(x), S(0.0)}, y[shaft], S(0.0), S(0.0), y[pitch], y[pitch + 1]};
+    }
+  }
   /// After an impact of the wings: a shaft that it has brought to rest is held or turns back.
   void shaft_after_impact([[maybe_unused]] const S& x, [[maybe_unused]] const State& y,
                           [[maybe_unused]] Signs& signs) const {
     if constexpr (!turns) {
-      if (jumps_at_velocity && value_of(y[shaft]) == 0.0) return hold_or_move(x, y, signs);
+      if (jumps_at_velocity && value_of(y[shaft]) == 0.0) return shaft_rest::hold_or_move(*this, x, y, signs);
       signs[velocity] = sign_of(y[shaft]);
       signs[slip] = S(1.0);
     }
@@ -293,9 +297,13 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     if constexpr (on_hinges) {
       mode.turn = signs[turn];
       mode.held = signs[held];
-    } else {
-      mode.pitching = signs[pitching];
     }
+    if constexpr (general) {
+      // Of a current that is a state the limits hold it; another has kinks there.
+      mode.bridge = value_of(signs[blocked]) < 0.0 ? signs[blocked] : signs[bridge];
+      mode.limit = value_of(signs[limited]) < 0.0 ? signs[limited] : signs[limit];
+    }
+    if constexpr (general || !on_hinges) mode.pitching = signs[pitching];
     if constexpr (!turns) mode.slip = signs[slip];
     return mode;
   }
@@ -305,7 +313,7 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     else return direct_kinematics(vehicle.transmission.direct);
   }
   Configuration<S> configuration(const S& theta) const
-    requires turns_
+    requires(features_.turns)
   {
     using std::cos;
     using std::sin;
@@ -313,7 +321,7 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
   }
   template <std::size_t count>
   std::array<Configuration<S>, count> configurations(const S& theta, const S& h, const double (&c)[count]) const
-    requires(turns_ && std::same_as<S, double>)
+    requires(features_.turns && !features_.general && std::same_as<S, double>)
   {
     std::array<double, count> angles;
     for (std::size_t n = 0; n < count; ++n) angles[n] = theta + c[n] * h;
@@ -328,8 +336,13 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
 
   /// The instant of a crank in a configuration, or of a direct drive at a phase.
   template <class At>
-  [[gnu::always_inline]] MotionState<S> instant(const At& place, const State& y,
-                                                [[maybe_unused]] const Signs& signs) const {
+  [[gnu::always_inline]] auto instant(const At& place, const State& y, [[maybe_unused]] const Signs& signs) const {
+    if constexpr (general) return instant_at(vehicle, coordinates(place, y), supply(place), mode(signs));
+    else return compact_instant(place, y, signs);
+  }
+  template <class At>
+  [[gnu::always_inline]] MotionState<S> compact_instant(const At& place, const State& y,
+                                                        [[maybe_unused]] const Signs& signs) const {
     if constexpr (turns) {
       const S i = current(S(0.0), y), v_t = terminal_voltage(vehicle, vehicle.voltage, i);
       if constexpr (on_hinges) return {place, y[shaft], i, v_t, y[pitch], pitch_velocity(y, signs)};
@@ -345,12 +358,12 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
   }
 
   [[gnu::always_inline]] MotionHere motion(const Configuration<S>& place, const State& y, const Signs& signs) const
-    requires turns_
+    requires(features_.turns && !features_.general)
   {
     return motion_of(instant(place, y, signs), mode(signs));
   }
   [[gnu::always_inline]] MotionHere motion(const S& x, const State& y, const Signs& signs) const {
-    if constexpr (turns) return motion(configuration(x), y, signs);
+    if constexpr (turns && !general) return motion(configuration(x), y, signs);
     else return motion_of(instant(x, y, signs), mode(signs));
   }
 
@@ -361,12 +374,12 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
 
   template <bool quadratures>
   solver::Rates<CycleSystem> rates(const S& x, const State& y, const Signs& signs) const {
-    if constexpr (turns) return rates<quadratures>(configuration(x), y, signs);
+    if constexpr (turns && !general) return rates<quadratures>(configuration(x), y, signs);
     else return rates_at<quadratures>(x, y, signs);
   }
   template <bool quadratures>
   solver::Rates<CycleSystem> rates(const Configuration<S>& place, const State& y, const Signs& signs) const
-    requires turns_
+    requires(features_.turns && !features_.general)
   {
     return rates_at<quadratures>(place, y, signs);
   }
@@ -376,8 +389,11 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     return select(signs[held] >= S(0.0), y[pitch + 1], S(0.0));
   }
 
-  [[gnu::always_inline]] MotionHere motion_of(const MotionState<S>& instant, const Mode<S>& mode) const {
-    if constexpr (on_hinges) {
+  template <class Instant>
+  [[gnu::always_inline]] MotionHere motion_of(const Instant& instant, const Mode<S>& mode) const {
+    if constexpr (general) {
+      return evaluate(vehicle, instant, mode);
+    } else if constexpr (on_hinges) {
       return pitch_motion_at(vehicle, instant, mode);
     } else {
       Motion<S> m = motion_at(vehicle, instant, mode);
@@ -396,25 +412,29 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     solver::Rates<CycleSystem> r;
     if constexpr (!turns) r.dy[0] = m.stroke_velocity * per_rate;
     r.dy[shaft] = m.crank_acceleration * per_rate;
-    if constexpr (inductive) r.dy[current_state] = m.inductive_voltage / vehicle.motor.armature_inductance * per_rate;
+    if constexpr (general) further_rates(place, y, signs, m, per_rate, r);
+    else if constexpr (inductive)
+      r.dy[current_state] = m.inductive_voltage / vehicle.motor.armature_inductance * per_rate;
     r.switches[force] = m.force_switch;
     r.switches[gear] = has_gear_loss(vehicle.motor) ? m.gear_torque : S(1.0);
     if constexpr (!turns) {
       const bool stuck = value_of(signs[slip]) < 0.0;
       r.switches[velocity] = stuck ? signs[velocity] : y[shaft];
-      r.switches[release] = stuck ? at_rest(place, y, signs).margin() : S(1.0);
+      r.switches[release] = stuck ? shaft_rest::at_rest(*this, place, y, signs).margin() : S(1.0);
       if (!force_has_branches(vehicle)) r.switches[force] = S(1.0);
       if (stuck) r.switches[force] = signs[force], r.switches[gear] = signs[gear];
     }
     if constexpr (on_hinges) {
-      const bool at_stop = pitch_stops::is_held<CycleSystem>(signs);
-      r.dy[pitch] = at_stop ? S(0.0) : S(y[pitch + 1] * per_rate);
-      r.dy[pitch + 1] = m.pitch_acceleration * per_rate;
-      r.switches[turn] = at_stop ? signs[turn] : y[pitch + 1];
+      const bool is_held = pitch_stops::is_held<CycleSystem>(signs);
+      const bool hinged = !general || is_hinged(vehicle);
+      if (hinged) {
+        r.dy[pitch] = is_held ? S(0.0) : S(y[pitch + 1] * per_rate);
+        r.dy[pitch + 1] = m.pitch_acceleration * per_rate;
+      }
+      r.switches[turn] = is_held || !hinged ? signs[turn] : y[pitch + 1];
       r.switches[stop] = pitch_stops::switch_of(*this, m, y, signs);
-    } else {
-      r.switches[pitching] = m.aero.pitch_margin;
     }
+    if constexpr (!on_hinges) r.switches[pitching] = m.aero.pitch_margin;
     r.switches[stored] = m.stored_moment;
     if constexpr (quadratures) {
       const CycleIntegrals<S> in_time = integrands<S>(m, turns ? y[shaft] : m.stroke_velocity, mode(signs));
@@ -427,47 +447,50 @@ struct CycleSystem : CycleLayout<turns_, on_hinges_, inductive_>,
     return r;
   }
 
-  /// The motor's torque on a shaft at rest, and between which torques it stands [N m].
-  struct AtRest {
-    S torque;
-    StandingTorques<S> torques;
-    S margin() const { return torques.margin(torque); }
-    S direction() const { return torques.direction(torque); }
-  };
-  AtRest at_rest(const S& phi, State y, const Signs& signs) const {
-    y[shaft] = S(0.0);
-    const MotionState<S> here = instant(phi, y, signs);
-    S moment = here.configuration.spring_moment;
-    if constexpr (on_hinges) moment = moment + wings_standing(vehicle, here, mode(signs)).moment;
-    const CrankKinematics<S>& k = here.configuration.kinematics;
-    return {vehicle.motor.torque_constant * here.current, standing_torques(vehicle, k, static_rod_force(k, moment))};
-  }
-
-  void rest_or_release(std::size_t k, const S& phi, State& y, Signs& signs) const {
-    if (k == velocity) {
-      y[shaft] = S(0.0);
-      hold_or_move(phi, y, signs);
-    } else {
-      signs[slip] = S(1.0);
-      signs[velocity] = at_rest(phi, y, signs).direction();
+  /// Rates of what only vehicles of further kinds have; states that this one lacks fade away.
+  void further_rates(const S& x, const State& y, const Signs& signs, const PitchMotion<S>& m, const S& per_rate,
+                     solver::Rates<CycleSystem>& r) const {
+    const bool compliant = is_compliant(vehicle.piezo), twisting = twists(vehicle.pitch.torsion);
+    for (std::size_t n = current_state; n < y.size(); ++n) r.dy[n] = -y[n];
+    if (has_current_state(vehicle)) {
+      r.dy[current_state] = m.inductive_voltage / vehicle.motor.armature_inductance * per_rate;
     }
-  }
-  void hold_or_move(const S& phi, const State& y, Signs& signs) const {
-    const AtRest rest = at_rest(phi, y, signs);
-    signs[slip] = S(rest.torques.hold(rest.torque) ? -1.0 : 1.0);
-    if (value_of(signs[slip]) > 0.0) signs[velocity] = rest.direction();
+    if constexpr (!turns) {
+      if (compliant) {
+        r.dy[tip] = y[tip + 1] * per_rate;
+        r.dy[tip + 1] = instant(x, y, signs).tip_acceleration * per_rate;
+      }
+    }
+    if (!pitches(vehicle)) {
+      r.switches[pitching] = m.aero.pitch_margin;
+    } else {
+      r.switches[pitching] = S(1.0);
+    }
+    r.switches[local_turn] = S(1.0);
+    if (twisting) {
+      r.dy[twist] = y[twist + 1] * per_rate;
+      r.dy[twist + 1] = m.twist_acceleration * per_rate;
+      r.switches[local_turn] = local_pitch_velocity(coordinates(x, y));
+    }
+    r.switches[bridge] = electronics_events::bridge_switch(*this, x, y, signs);
+    r.switches[limit] = electronics_events::limit_switch(*this, x, y, signs);
   }
 };
 
 /// A crank with wings under the pitch law, and with wings that pitch on hinges; a direct drive with either. N: the
 /// number of states, one more with an inductance.
 template <Scalar S, int N, class V = Vehicle<S>>
-using CrankSystem = CycleSystem<S, true, false, N == 2, V>;
+using CrankSystem = CycleSystem<S, CycleFeatures{true, false, N == 2}, V>;
 template <Scalar S, int N>
-using PitchCrankSystem = CycleSystem<S, true, true, N == 4>;
+using PitchCrankSystem = CycleSystem<S, CycleFeatures{true, true, N == 4}>;
 template <Scalar S, int N>
-using DirectSystem = CycleSystem<S, false, false, N == 3>;
+using DirectSystem = CycleSystem<S, CycleFeatures{false, false, N == 3}>;
 template <Scalar S, int N>
-using PitchDirectSystem = CycleSystem<S, false, true, N == 5>;
+using PitchDirectSystem = CycleSystem<S, CycleFeatures{false, true, N == 5}>;
+/// A vehicle of any kind, on a crank and as a direct drive.
+template <Scalar S>
+using AnyCrankSystem = CycleSystem<S, CycleFeatures{true, true, true, true}>;
+template <Scalar S>
+using AnyDirectSystem = CycleSystem<S, CycleFeatures{false, true, true, true}>;
 
 }  // namespace wingbeat

@@ -41,6 +41,9 @@ struct DirectBalance {
 /// \f]
 DirectBalance direct_balance(const Vehicle<double>& vehicle);
 
+/// About how large the current is [A].
+double typical_current(const Vehicle<double>& vehicle, const DirectBalance& balance);
+
 /// Of wings that pitch, about how far [rad] at a stroke velocity [rad/s]: what inertia and drag of an upright wing ask
 /// of the hinge, at most a radian.
 double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity);

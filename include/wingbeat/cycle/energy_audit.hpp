@@ -11,8 +11,8 @@ namespace wingbeat {
 /// Mean powers of a cycle [W], which add up to the input to the solver's accuracy; what follows the gearbox is the
 /// motor's output (model.md section 4).
 /// \f[
-/// P_\mathrm{e} = R_\mathrm{a} \overline{i^2} + b\, \overline{\omega^2} + P_\mathrm{motor} + P_\mathrm{gear}
-/// + P_\mathrm{friction} + P_\mathrm{hinge} + P_\mathrm{aero} + P_\mathrm{residual}
+/// P_\mathrm{e} = P_\mathrm{esc} + R_\mathrm{a} \overline{i^2} + b\, \overline{\omega^2} + P_\mathrm{motor} +
+/// P_\mathrm{gear} + P_\mathrm{friction} + P_\mathrm{hinge} + P_\mathrm{aero} + P_\mathrm{residual}
 /// \f]
 struct EnergyAudit {
   double electrical;      ///< P_e
@@ -25,13 +25,14 @@ struct EnergyAudit {
   double aerodynamic;     ///< \f$P_\mathrm{aero} = \overline{M_\mathrm{aero} \dot\beta + M_\mathrm{pitch} \dot\psi}\f$
   double residual;        ///< what the formulation fails to conserve; zero to rounding for virtual-work
   double imbalance;       ///< P_e minus all of these: zero but for the error of the solution
+  double electronics = 0.0;  ///< \f$P_\mathrm{esc}\f$ that electronics lose, of a piezo with its dielectric's
 };
 
 namespace detail {
 
 inline EnergyAudit with_imbalance(EnergyAudit a) {
   a.imbalance = a.electrical - a.copper - a.viscous - a.motor_friction - a.gear - a.friction - a.hinge - a.aerodynamic -
-                a.residual;
+                a.residual - a.electronics;
   return a;
 }
 
@@ -39,9 +40,10 @@ inline EnergyAudit with_imbalance(EnergyAudit a) {
 
 inline EnergyAudit energy_audit(const Metrics<double>& m) {
   const double hinge = std::isfinite(m[Metric::power_hinge]) ? m[Metric::power_hinge] : 0.0;
+  const double electronics = std::isfinite(m[Metric::power_electronics]) ? m[Metric::power_electronics] : 0.0;
   return detail::with_imbalance({m[Metric::power_electrical], m[Metric::power_copper], m[Metric::power_viscous],
                                  m[Metric::power_motor_friction], m[Metric::power_gear], m[Metric::power_friction],
-                                 hinge, m[Metric::power_aerodynamic], m[Metric::power_residual], 0.0});
+                                 hinge, m[Metric::power_aerodynamic], m[Metric::power_residual], 0.0, electronics});
 }
 
 /// Up to this imbalance [W] the balance of a solution to the relative `tolerance` counts as closed. What is beyond is

@@ -29,6 +29,7 @@ enum class Metric {
   power_viscous,               ///< \f$P_\mathrm{visc}\f$ of the motor [W]
   power_motor_friction,        ///< \f$P_\mathrm{motor}\f$ in the motor's own friction [W]
   power_gear,                  ///< \f$P_\mathrm{gear}\f$ lost in the gearbox [W]
+  power_electronics,           ///< \f$P_\mathrm{esc}\f$ lost in electronics, of a piezo with its dielectric's [W]
   power_loss,                  ///< \f$P_\mathrm{loss}\f$ (20) [W]
   power_residual,              ///< \f$P_\mathrm{residual}\f$ that the formulation fails to conserve [W]
   lift_mean,                   ///< mean lift [N]

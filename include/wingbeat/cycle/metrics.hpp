@@ -3,11 +3,12 @@
 
 #include <array>
 #include <cmath>
+#include <optional>
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/cycle/metric_values.hpp"
-#include "wingbeat/vehicle/dynamics.hpp"
+#include "wingbeat/vehicle/impact.hpp"
 #include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
@@ -30,6 +31,13 @@ CycleIntegrals<S> integrands(const Motion<S>& m, const S& omega, const Mode<S>& 
           mode.force * m.rod_force,
           m.gear_loss,
           mode.direction * omega};
+}
+
+template <Scalar S>
+CycleIntegrals<S> integrands(const PitchMotion<S>& m, const S& omega, const Mode<S>& mode) {
+  CycleIntegrals<S> all = integrands<S>(static_cast<const Motion<S>&>(m), omega, mode);
+  all[std::size_t(Integral::speed_square)] = square(m.damped_speed);
+  return all;
 }
 
 /// What an impact on a stop adds to the integrals at once.
@@ -69,6 +77,16 @@ template <Scalar S>
 CycleExtremes<S> extreme_candidates(const Motion<S>& m, const S& omega, const Mode<S>& mode, const S& beta = S(0.0)) {
   return {m.current, m.aero.lift, mode.force * m.rod_force, mode.stroke * m.stroke_velocity, -omega, omega,
           beta,      -beta};
+}
+
+/// What electronics lose [W] of a power that they pass on to the terminals, at the frequency f of flapping: of a
+/// brushless motor \f$(1/\eta - 1) \overline{v i}\f$, of a piezo electronics_loss() with its dielectric's. Nothing of
+/// other vehicles.
+template <Scalar S>
+std::optional<S> electronics_power(const Vehicle<S>& v, const S& terminal_power, const S& f) {
+  if (is_given(v.piezo)) return electronics_loss(v.piezo, v.voltage_offset, v.voltage, f);
+  if (!limits_current(v.electronics) && value_of(v.electronics.efficiency) == 1.0) return std::nullopt;
+  return (S(1.0) / v.electronics.efficiency - S(1.0)) * terminal_power;
 }
 
 /// The metrics of a cycle from its integrals and extremes: of all motors together, but for the force of one rod and the
@@ -124,7 +142,15 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   const S current_square = f * total(Integral::current_square);
   const auto carries_current = current_square > S(0.0);
   m[Metric::current_rms] = select(carries_current, sqrt(select(carries_current, current_square, S(1.0))), S(0.0));
-  m[Metric::power_electrical] = f * total(Integral::electrical_work);
+  const S terminal_power = f * total(Integral::electrical_work);
+  m[Metric::power_electronics] = S(absent);
+  m[Metric::power_electrical] = terminal_power;
+  if constexpr (ScalarTraits<S>::reads_tables && requires { v.electronics; }) {
+    if (const std::optional<S> lost = electronics_power(v, terminal_power, f)) {
+      m[Metric::power_electronics] = *lost;
+      m[Metric::power_electrical] = terminal_power + *lost;
+    }
+  }
   m[Metric::power_motor] = f * total(Integral::motor_work);
   m[Metric::power_motor_reference] = S(two_pi) * reporting.bench_torque_constant * f * m[Metric::current_mean];
   m[Metric::power_friction] = f * total(Integral::friction_work);

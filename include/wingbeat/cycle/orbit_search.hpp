@@ -23,7 +23,7 @@ namespace wingbeat::detail {
 /// pair takes about a microsecond, of wings that pitch about three.
 constexpr long orbit_search_work = 1000000, pitching_search_work = 300000;
 inline long search_work(const Vehicle<double>& vehicle) {
-  return pitches(vehicle) ? pitching_search_work : orbit_search_work;
+  return pitches(vehicle) || is_of_further_kind(vehicle) ? pitching_search_work : orbit_search_work;
 }
 
 /// What the solutions of one vehicle share that differ by the temperatures of its motor alone.
@@ -47,6 +47,10 @@ SteadyFlapping find_direct_flapping(const Vehicle<double>& vehicle, const Steady
                                     const StartUp& start_up, SharedSearch& shared);
 SteadyFlapping find_pitching_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                       const StartUp& start_up, SharedSearch& shared);
+SteadyFlapping find_any_crank_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                       const StartUp& start_up, SharedSearch& shared);
+SteadyFlapping find_any_direct_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                        const StartUp& start_up, SharedSearch& shared);
 
 /// The start of every search under a crank: its statics. True, with the decision, of a motor that never starts.
 bool stalls(const StaticBalance& statics, SteadyFlapping& result);
@@ -139,20 +143,24 @@ class OrbitSearch {
   /// True where wings over-rotate for a notable part of the period: there, a second orbit is stable now and then.
   bool over_rotates() {
     if constexpr (!System::on_hinges) return false;
-    else return system_.vehicle.wings.air_density > 0.0 && pitch().over_rotation_of_moving() > notable_over_rotation;
+    else
+      return pitches(system_.vehicle) && system_.vehicle.wings.air_density > 0.0 &&
+             pitch().over_rotation_of_moving() > notable_over_rotation;
   }
 
   void fill(SteadyFlapping& result) {
     result.crank_speed = system_.shaft_speed(start());
     result.current = system_.current(0.0, start());
     const CycleExtremes<double> extremes = cycle_extremes(system_, iterate_, options_.get().tolerance);
-    constexpr bool pitching = System::on_hinges;
+    const bool pitching = System::on_hinges && pitches(system_.vehicle);
     PitchMetrics of_pitch{};
-    if constexpr (pitching) of_pitch = pitch();
+    if constexpr (System::on_hinges) {
+      if (pitching) of_pitch = pitch();
+    }
     result.record = CycleRecord(CycleRecord::Recorded{RecordedCycle<System>{system_, std::move(iterate_)}});
     result.metrics = cycle_metrics(system_.vehicle, result.record.integrals(), extremes,
                                    summary_.floquet_multiplier_max, options_.get().reporting);
-    if constexpr (pitching) {
+    if (pitching) {
       set_pitch_metrics(of_pitch, system_.vehicle.pitch, result.metrics);
       result.evidence.over_rotation = of_pitch.over_rotation_of_moving();
     }

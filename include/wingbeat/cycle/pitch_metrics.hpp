@@ -68,17 +68,16 @@ inline constexpr std::array gauss_weights = {0.2369268850561891, 0.4786286704993
 /// tolerance, which is enough for the solution, but the angle of attack jumps there.
 template <class System>
 double pitch_at_start(const solver::Iterate<System>& cycle, std::size_t n) {
-  constexpr std::size_t psi = System::pitch;
-  if (n == cycle.steps.size()) return cycle.end[psi];
+  if (n == cycle.steps.size()) return System::local_pitch(cycle.end);
   const auto& step = cycle.steps[n];
   if constexpr (!System::turns) {
     if (n > 0 && step.signs[System::velocity] != cycle.steps[n - 1].signs[System::velocity] &&
         step.y[System::shaft] != 0.0) {
       const auto& dy = step.first.dy;
-      return step.y[psi] - dy[psi] * step.y[System::shaft] / dy[System::shaft];
+      return System::local_pitch(step.y) - System::local_pitch(dy) * step.y[System::shaft] / dy[System::shaft];
     }
   }
-  return step.y[psi];
+  return System::local_pitch(step.y);
 }
 
 }  // namespace detail
@@ -118,9 +117,10 @@ PitchMetrics pitch_metrics(const System& system, const solver::Iterate<System>& 
       const double t = time + inside.dq[std::size_t(Integral::time)];
       const double dt = system.template rates<true>(x, inside.y, step.signs).dq[std::size_t(Integral::time)];
       const auto weighted = std::polar(0.5 * step.h * weights[k] * dt, -two_pi * t / period);
-      if (system.stroke_sign(step.signs) * inside.y[System::pitch] > still_pitch) m.over_rotation += std::abs(weighted);
+      if (system.stroke_sign(step.signs) * System::local_pitch(inside.y) > still_pitch)
+        m.over_rotation += std::abs(weighted);
       stroke += weighted * system.stroke_angle(x, inside.y);
-      pitching += weighted * inside.y[System::pitch];
+      pitching += weighted * System::local_pitch(inside.y);
     }
     time += step.dq[std::size_t(Integral::time)];
   }

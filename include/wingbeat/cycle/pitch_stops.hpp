@@ -1,14 +1,15 @@
-// Stops of the pitching as events of a periodic system, whatever drives the stroke (model.md section 12).
+// Stops and friction of the pitching as events of a periodic system, whatever drives the stroke (model.md section 12).
 //
 // A stop takes the pitch velocity in an inelastic impact, at which the stroke velocity jumps too, and holds the wings
-// as long as they press on it. What the names of signs and states mean: CycleLayout.
+// as long as they press on it. Friction of their joint holds them where they come to rest, as long as nothing exceeds
+// it. What the names of signs and states mean: CycleLayout.
 #pragma once
 
 #include <cmath>
 
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/solve/iterate_record.hpp"
-#include "wingbeat/vehicle/dynamics.hpp"
+#include "wingbeat/vehicle/impact.hpp"
 
 namespace wingbeat::pitch_stops {
 
@@ -23,35 +24,40 @@ bool is_held(const typename System::Signs& signs) {
   return value_of(signs[System::held]) < 0.0;
 }
 
-/// What the switch `stop` is: room to the stop [rad], of wings that it holds how they press on it [N m].
+/// What the switch `stop` is: room to the stop [rad], of wings that are held what holds them beyond what would move
+/// them [N m].
 template <class System>
 typename System::Real switch_of(const System& system, const PitchMotion<typename System::Real>& m,
                                 const typename System::State& y, const typename System::Signs& signs) {
   using S = typename System::Real;
-  if (!has_stop(system.vehicle.pitch.hinge)) return S(1.0);
-  const S stop_side = side<System>(y);
-  return is_held<System>(signs) ? S(stop_side * m.stop_moment)
-                                : S(system.vehicle.pitch.hinge.stop - stop_side * y[System::pitch]);
+  const PitchHinge<S>& hinge = system.vehicle.pitch.hinge;
+  if (!system.jumps(System::stop) || is_clamped(hinge)) return S(1.0);
+  if (is_held<System>(signs)) return holding_margin<S>(hinge, y[System::pitch], m.stop_moment);
+  return has_stop(hinge) ? S(hinge.stop - side<System>(y) * y[System::pitch]) : S(1.0);
 }
 
-/// True of a state with which a recorded cycle may begin at a stop.
+/// True of a state with which a recorded cycle may begin with wings that something holds.
 template <class System>
-bool rests_at_stop(const System& system, const typename System::State& y) {
-  return has_stop(system.vehicle.pitch.hinge) && value_of(y[System::pitch + 1]) == 0.0 &&
-         std::abs(value_of(y[System::pitch])) >= value_of(system.vehicle.pitch.hinge.stop);
+bool rests(const System& system, const typename System::State& y) {
+  const auto& hinge = system.vehicle.pitch.hinge;
+  return value_of(y[System::pitch + 1]) == 0.0 &&
+         (has_friction(hinge) || (has_stop(hinge) && std::abs(value_of(y[System::pitch])) >= value_of(hinge.stop)));
 }
 
-/// Decides whether wings that rest at a stop are held there.
+/// Decides whether wings that rest are held.
 template <class System>
 void hold_or_leave(const System& system, const typename System::Real& x, const typename System::State& y,
                    typename System::Signs& signs) {
   using S = typename System::Real;
-  const S stop_side = side<System>(y);
+  const PitchHinge<S>& hinge = system.vehicle.pitch.hinge;
   signs[System::held] = S(-1.0);
-  signs[System::turn] = -stop_side;
+  if (is_at_stop<S>(hinge, y[System::pitch])) signs[System::turn] = -side<System>(y);
   // An impact may have turned them over.
   solver::settle_signs(system, x, y, signs);
-  if (value_of(S(stop_side * system.motion(x, y, signs).stop_moment)) < 0.0) signs[System::held] = S(1.0);
+  const S moment = system.motion(x, y, signs).stop_moment;
+  if (value_of(holding_margin<S>(hinge, y[System::pitch], moment)) >= 0.0) return;
+  signs[System::held] = S(1.0);
+  signs[System::turn] = leaving_side<S>(hinge, y[System::pitch], moment);
 }
 
 /// The state after the impact of one that is at a stop; what it adds to the integrals is added to `*totals`, where
@@ -61,8 +67,7 @@ typename System::State after_impact(const System& system, const typename System:
                                     const typename System::Signs& signs, typename System::Quadrature* totals) {
   using S = typename System::Real;
   y[System::pitch] = side<System>(y) * system.vehicle.pitch.hinge.stop;
-  MotionState<S> instant{
-      {system.kinematics(x), S(0.0)}, y[System::shaft], S(0.0), S(0.0), y[System::pitch], y[System::pitch + 1]};
+  auto instant = system.instant_before_impact(x, y, signs);
   Mode<S> mode = System::mode(signs);
   meet_stop(system.vehicle, &instant, &mode, [&](const StopImpact<S>& impact) {
     if (!totals) return;
@@ -72,17 +77,23 @@ typename System::State after_impact(const System& system, const typename System:
   });
   y[System::shaft] = instant.omega;
   y[System::pitch + 1] = S(0.0);
+  if constexpr (System::general) y[System::twist + 1] = instant.twist.velocity;
   return y;
 }
 
-/// The switch `stop` is crossed: wings that were held leave, others meet the stop. `totals` as in after_impact().
+/// The switch `stop` or `turn` is crossed: wings that were held leave, others meet the stop or come to rest. `totals`
+/// as in after_impact().
 template <class System>
-void event_transition(const System& system, const typename System::Real& x, typename System::State& y,
+void event_transition(const System& system, std::size_t k, const typename System::Real& x, typename System::State& y,
                       typename System::Signs& signs, typename System::Quadrature* totals) {
   using S = typename System::Real;
-  if (is_held<System>(signs)) {
+  if (k == System::turn) {
+    y[System::pitch + 1] = S(0.0);
+    hold_or_leave(system, x, y, signs);
+  } else if (is_held<System>(signs)) {
+    const S moment = system.motion(x, y, signs).stop_moment;
     signs[System::held] = S(1.0);
-    signs[System::turn] = -side<System>(y);
+    signs[System::turn] = leaving_side<S>(system.vehicle.pitch.hinge, y[System::pitch], moment);
   } else {
     y = after_impact(system, x, y, signs, totals);
     signs[System::impacts] = signs[System::impacts] + S(1.0);
@@ -97,7 +108,23 @@ bool has_impact(const typename System::Signs& from, const typename System::Signs
   return value_of(from[System::impacts]) != value_of(to[System::impacts]);
 }
 
-/// A solution next to a recorded one that met a stop at x: it meets it a little earlier or later.
+/// A solution next to a recorded one of which state n came to zero at x, where its rates jump: it does so a little
+/// earlier or later.
+template <bool quadratures, class System>
+void cross_at_zero(const System& system, const typename System::Real& x, typename System::State& y, std::size_t n,
+                   const typename System::Real& off, const typename System::Signs& from,
+                   const typename System::Signs& to, typename System::Quadrature* totals) {
+  const auto before = system.template rates<quadratures>(x, y, from);
+  const auto late = -off / before.dy[n];
+  const auto after = system.template rates<quadratures>(x, y, to);
+  for (std::size_t k = 0; k < y.size(); ++k) y[k] = y[k] + (before.dy[k] - after.dy[k]) * late;
+  if constexpr (quadratures) {
+    for (std::size_t q = 0; q < before.dq.size(); ++q)
+      (*totals)[q] = (*totals)[q] + (before.dq[q] - after.dq[q]) * late;
+  }
+}
+
+/// A solution next to a recorded one that met a stop, or whose wings friction brought to rest, at x.
 template <bool quadratures, class System>
 void reset_map(const System& system, const typename System::Real& x, typename System::State& y,
                const typename System::Signs& from, const typename System::Signs& to,
@@ -116,10 +143,15 @@ void reset_map(const System& system, const typename System::Real& x, typename Sy
       }
     }
   }
-  if (is_held<System>(to)) {
-    y[System::pitch] = side<System>(y) * system.vehicle.pitch.hinge.stop;
-    y[System::pitch + 1] = S(0.0);
-  }
+  const PitchHinge<S>& hinge = system.vehicle.pitch.hinge;
+  if (is_clamped(hinge)) return;
+  const bool holds = is_held<System>(to), held_before = is_held<System>(from);
+  const bool turned = has_friction(hinge) && !held_before && !has_impact<System>(from, to) &&
+                      (holds || value_of(from[System::turn]) != value_of(to[System::turn]));
+  if (turned) cross_at_zero<quadratures>(system, x, y, System::pitch + 1, S(y[System::pitch + 1]), from, to, totals);
+  if (!holds) return;
+  if (is_at_stop<S>(hinge, y[System::pitch])) y[System::pitch] = side<System>(y) * hinge.stop;
+  y[System::pitch + 1] = S(0.0);
 }
 
 }  // namespace wingbeat::pitch_stops

@@ -26,12 +26,13 @@ struct RecordedCycle {
 };
 
 /// The cycle of one of the systems: of a crank or of a direct drive, of wings under the pitch law or that pitch, with
-/// or without inductance.
+/// or without inductance, or of any other kind.
 using AnyRecordedCycle =
     std::variant<RecordedCycle<CrankSystem<double, 1>>, RecordedCycle<CrankSystem<double, 2>>,
                  RecordedCycle<DirectSystem<double, 2>>, RecordedCycle<DirectSystem<double, 3>>,
                  RecordedCycle<PitchDirectSystem<double, 4>>, RecordedCycle<PitchDirectSystem<double, 5>>,
-                 RecordedCycle<PitchCrankSystem<double, 3>>, RecordedCycle<PitchCrankSystem<double, 4>>>;
+                 RecordedCycle<PitchCrankSystem<double, 3>>, RecordedCycle<PitchCrankSystem<double, 4>>,
+                 RecordedCycle<AnyCrankSystem<double>>, RecordedCycle<AnyDirectSystem<double>>>;
 struct CycleRecord::Recorded {
   AnyRecordedCycle cycle;
 };

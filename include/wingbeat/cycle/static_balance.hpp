@@ -18,7 +18,17 @@ namespace wingbeat {
 /// \f]
 template <template <Scalar> class V, Scalar S>
 S stall_torque(const V<S>& v) {
-  return v.motor.torque_constant * v.voltage / circuit_resistance(v);
+  const S i = v.voltage / circuit_resistance(v);
+  if constexpr (requires { v.electronics; }) return v.motor.torque_constant * current_within(v.electronics, i);
+  else return v.motor.torque_constant * i;
+}
+
+/// The current [A] at a steady speed, as electronics let it flow.
+template <template <Scalar> class V, Scalar S>
+S steady_current(const V<S>& v, const S& omega) {
+  const S i = algebraic_current(v, v.voltage, omega);
+  if constexpr (requires { v.electronics; }) return current_within(v.electronics, i);
+  else return i;
 }
 
 /// Torque that would start the crank forward from rest [N m], `torque` T being the motor's; behind a gearbox what the
@@ -123,8 +133,8 @@ S torque_surplus(const V<S>& v, std::span<const LoadPlace<S>> places, const S& o
     load = load + F * p.crank_jacobian + v.friction.radius * abs(F);
   }
   if (!places.empty()) load = load * S(1.0 / double(places.size()));
-  const S motor = v.motor.torque_constant * algebraic_current(v, v.voltage, omega) - v.motor.viscous_damping * omega -
-                  v.motor.friction_torque;
+  const S motor =
+      v.motor.torque_constant * steady_current(v, omega) - v.motor.viscous_damping * omega - v.motor.friction_torque;
   return gear_torque_ratio(v.motor, S(1.0)) * motor - load_free_friction(v.friction, omega, S(1.0)) - load -
          v.load_torque;
 }

@@ -7,7 +7,7 @@
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/cycle/metric_values.hpp"
 #include "wingbeat/cycle/status_evidence.hpp"
-#include "wingbeat/vehicle/forward.hpp"
+#include "wingbeat/vehicle/coordinates.hpp"
 
 namespace wingbeat {
 
@@ -23,11 +23,8 @@ struct StartUpOutcome {
   FlappingStatus status = FlappingStatus::flapping;
   bool settled = false;  ///< false: undecided within the solver's limits
   StatusEvidence evidence;
-  double crank_speed = 0.0;     ///< flapping: omega at crank angle 0 (direct drive: phase 0 of the supply) [rad/s]
-  double current = 0.0;         ///< flapping: i there [A]
-  double stroke_angle = 0.0;    ///< flapping, direct drive: beta there [rad]
-  double pitch_angle = 0.0;     ///< flapping, of wings that pitch: psi there [rad]
-  double pitch_velocity = 0.0;  ///< psi' there [rad/s]
+  /// Flapping: how everything is at crank angle 0 (direct drive: phase 0 of the supply); a crank's angle is 0.
+  Coordinates<double> state{};
   /// Flapping: goes on with the simulation for the metrics of the settled cycle, to a tolerance; empty if it does not
   /// settle. An assessment that cannot tell them leaves this empty.
   std::function<std::optional<SimulatedCycle>(double tolerance, const Reporting& reporting)> cycle;

@@ -14,13 +14,15 @@ namespace wingbeat {
 /// edge is ahead in the direction of a positive stroke velocity.
 template <Scalar S>
 struct PitchHinge {
-  S stiffness = S(0);    ///< k_psi [N m/rad], >= 0
-  S damping = S(0);      ///< c_psi [N m s/rad], >= 0
-  S stop = S(infinity);  ///< psi_max: |psi| goes no further [rad], > 0, < pi; infinite where there is no stop
+  S stiffness = S(0);  ///< k_psi [N m/rad], >= 0
+  S damping = S(0);    ///< c_psi [N m s/rad], >= 0
+  /// psi_max: |psi| goes no further [rad], < pi; infinite where there is no stop, 0 where there is no hinge
+  S stop = S(infinity);
+  S friction = S(0);  ///< T_psi, constant friction of the joint [N m], >= 0
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
-    return use(self.stiffness, self.damping, self.stop);
+    return use(self.stiffness, self.damping, self.stop, self.friction);
   }
 };
 
@@ -29,23 +31,52 @@ namespace pitch_key {
 inline constexpr ParameterKey stiffness{"pitch.stiffness", "N m/rad", range::not_negative};
 inline constexpr ParameterKey damping{"pitch.damping", "N m s/rad", range::not_negative};
 inline constexpr ParameterKey stop{"pitch.stop", "rad", range::below_straight};
+inline constexpr ParameterKey friction{"pitch.friction", "N m", range::not_negative};
 }  // namespace pitch_key
 
 inline void validate(const PitchHinge<double>& h) {
   require(pitch_key::stiffness, h.stiffness);
   require(pitch_key::damping, h.damping);
-  if (h.stop != infinity) require(pitch_key::stop, h.stop);
+  if (h.stop != infinity && h.stop != 0.0) require(pitch_key::stop, h.stop);
+  require(pitch_key::friction, h.friction);
 }
 
+/// True where there is no hinge: what is left of the pitch is torsion.
+template <Scalar S>
+bool is_clamped(const PitchHinge<S>& h) {
+  return value_of(h.stop) == 0.0;
+}
 template <Scalar S>
 bool has_stop(const PitchHinge<S>& h) {
-  return std::isfinite(value_of(h.stop));
+  return std::isfinite(value_of(h.stop)) && !is_clamped(h);
+}
+template <Scalar S>
+bool has_friction(const PitchHinge<S>& h) {
+  return value_of(h.friction) > 0.0;
+}
+template <Scalar S>
+bool is_at_stop(const PitchHinge<S>& h, const S& psi) {
+  return has_stop(h) && std::abs(value_of(psi)) >= value_of(h.stop) * (1.0 - 1e-9);
 }
 
-/// The hinges of `count` wings as one, of stiffness \f$N_\mathrm{w} k_\psi\f$ and damping \f$N_\mathrm{w} c_\psi\f$.
+/// Positive while wings at rest stay so [N m], `moment` M being what presses them towards a positive psi: between
+/// \f$\pm T_\psi\f$, at a stop while they do not leave it. To which side they leave: leaving_side().
+template <Scalar S>
+S holding_margin(const PitchHinge<S>& h, const S& psi, const S& moment) {
+  using std::abs;
+  if (!is_at_stop(h, psi)) return h.friction - abs(moment);
+  return h.friction + (value_of(psi) > 0.0 ? S(moment) : S(-moment));
+}
+template <Scalar S>
+S leaving_side(const PitchHinge<S>& h, const S& psi, const S& moment) {
+  return is_at_stop(h, psi) ? S(-sign_of(psi)) : sign_of(moment);
+}
+
+/// The hinges of `count` wings as one, of stiffness \f$N_\mathrm{w} k_\psi\f$, damping \f$N_\mathrm{w} c_\psi\f$ and
+/// friction \f$N_\mathrm{w} T_\psi\f$.
 template <Scalar S>
 PitchHinge<S> hinges_together(const PitchHinge<S>& one, const S& count) {
-  return {count * one.stiffness, count * one.damping, one.stop};
+  return {count * one.stiffness, count * one.damping, one.stop, count * one.friction};
 }
 
 template <Scalar S>
@@ -56,14 +87,16 @@ struct PitchHingeLoads {
 };
 
 /// The loads at pitch angle psi [rad] and its velocity psi' [rad/s], without the reaction of a stop: moment, elastic
-/// energy and loss (model.md section 12).
+/// energy and loss (model.md section 12). `turn` is the sign of psi', 0 of wings that are held.
 /// \f[
-/// M_\mathrm{h} = k_\psi \psi + c_\psi \dot\psi, \qquad E_\mathrm{h} = \tfrac12 k_\psi \psi^2, \qquad
-/// P_\mathrm{h} = c_\psi \dot\psi^2
+/// M_\mathrm{h} = k_\psi \psi + c_\psi \dot\psi + T_\psi \operatorname{sign}\dot\psi, \qquad
+/// E_\mathrm{h} = \tfrac12 k_\psi \psi^2, \qquad P_\mathrm{h} = c_\psi \dot\psi^2 + T_\psi |\dot\psi|
 /// \f]
 template <Scalar S>
-PitchHingeLoads<S> hinge_loads(const PitchHinge<S>& h, const S& psi, const S& velocity) {
-  return {h.stiffness * psi + h.damping * velocity, S(0.5) * h.stiffness * square(psi), h.damping * square(velocity)};
+PitchHingeLoads<S> hinge_loads(const PitchHinge<S>& h, const S& psi, const S& velocity, const S& turn = S(0.0)) {
+  const S friction = h.friction * turn;
+  return {h.stiffness * psi + h.damping * velocity + friction, S(0.5) * h.stiffness * square(psi),
+          h.damping * square(velocity) + friction * velocity};
 }
 
 }  // namespace wingbeat

@@ -19,6 +19,7 @@
 #include "wingbeat/parts/blade_element.hpp"
 #include "wingbeat/parts/pitch_hinge.hpp"
 #include "wingbeat/parts/planform.hpp"
+#include "wingbeat/parts/wing_torsion.hpp"
 
 namespace wingbeat {
 
@@ -127,11 +128,12 @@ struct PitchingWings {
   NormalForce normal_force = NormalForce::lift_and_drag;
   NormalForceCoefficient<S> coefficient = {S(3.6), S(0.15)};
   S edge_suction = S(0);  ///< s_L: share of the added mass's force along the chord that counts as lift, 0 to 1
+  WingTorsion<S> torsion;
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.hinge, self.pitch_inertia, self.mass_product, self.moments, self.air, self.rotational_coefficient,
-               self.damping_coefficient, self.normal_force, self.coefficient, self.edge_suction);
+               self.damping_coefficient, self.normal_force, self.coefficient, self.edge_suction, self.torsion);
   }
 };
 
@@ -241,24 +243,34 @@ struct PitchAeroLoads {
 /// + \tfrac18 \rho\, C_\mathrm{rd} |\dot\psi| \dot\psi\, S_{40}
 /// \end{aligned}
 /// \f]
+///
+/// Of a strip the moments are its own, in `s2`, `s3` and `moments`.
 template <Scalar S>
-PitchAeroLoads<S> aero_loads(const BladeElement<S>& w, const PitchingWings<S>& p, const PitchState<S>& state,
-                             const S& stroke, const S& turn) {
+PitchAeroLoads<S> aero_loads_of(const BladeElement<S>& w, const PitchingWings<S>& p, const S& s2, const S& s3,
+                                const PitchChordMoments<S>& moments, const PitchState<S>& state, const S& stroke,
+                                const S& turn) {
   const S& rho = w.air_density;
   const S speed = stroke * state.stroke_velocity;
   const S alpha = S(0.5 * pi) + stroke * state.psi;
   const S translation = S(0.5) * rho * normal_force_coefficient(w, p, alpha) * speed * state.stroke_velocity;
   const S rotation = p.rotational_coefficient * rho * speed * state.velocity;
-  const S damping = S(0.125) * rho * p.damping_coefficient * turn * square(state.velocity) * p.moments.s40;
+  const S damping = S(0.125) * rho * p.damping_coefficient * turn * square(state.velocity) * moments.s40;
   PitchAeroLoads<S> loads;
   loads.angle_of_attack = alpha;
-  loads.normal_force = translation * w.s2 + rotation * p.moments.s21;
-  loads.stroke_moment = (translation * w.s3 + rotation * p.moments.s22) * state.cos_psi;
+  loads.normal_force = translation * s2 + rotation * moments.s21;
+  loads.stroke_moment = (translation * s3 + rotation * moments.s22) * state.cos_psi;
   // The force of translation acts at the centre of pressure, that of rotation at mid-chord.
   loads.pitch_moment =
-      translation * centre_of_pressure(alpha) * p.moments.s22 + S(0.5) * rotation * p.moments.s31 + damping;
+      translation * centre_of_pressure(alpha) * moments.s22 + S(0.5) * rotation * moments.s31 + damping;
   loads.power = loads.stroke_moment * state.stroke_velocity + loads.pitch_moment * state.velocity;
   return loads;
+}
+
+/// aero_loads_of() all wings.
+template <Scalar S>
+PitchAeroLoads<S> aero_loads(const BladeElement<S>& w, const PitchingWings<S>& p, const PitchState<S>& state,
+                             const S& stroke, const S& turn) {
+  return aero_loads_of(w, p, w.s2, w.s3, p.moments, state, stroke, turn);
 }
 
 /// Wings that pitch, as the stroke sees them. The moment M of the drive and of the stroke's springs turns them with the
@@ -298,7 +310,7 @@ WingsAtPitch<S> wings_at_pitch(const BladeElement<S>& w, const PitchingWings<S>&
   const PitchInertia<S> m = pitch_inertia(p, stroke_inertia, state);
   WingsAtPitch<S> wings;
   wings.aero = aero_loads(w, p, state, stroke, turn);
-  wings.hinge = hinge_loads(p.hinge, state.psi, state.velocity);
+  wings.hinge = hinge_loads(p.hinge, state.psi, state.velocity, select(held >= S(0.0), turn, S(0.0)));
   const S sc = (p.pitch_inertia - p.air.rr) * state.sin_psi * state.cos_psi;
   const S h_b = S(2.0) * sc * state.stroke_velocity * state.velocity -
                 (p.mass_product + p.air.rp) * state.sin_psi * square(state.velocity);

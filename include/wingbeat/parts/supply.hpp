@@ -38,10 +38,11 @@ struct Supply {
   S frequency = S(0);  ///< sine, battery_sine: drive frequency; pwm: switching frequency [Hz], > 0
   S duty = S(1);       ///< pwm: fraction of a period switched on [1], 0 to 1
   Battery<S> battery = {};
+  S offset = S(0);  ///< sine, battery_sine: V_0, constant part of the voltage [V]
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
-    return use(self.type, self.voltage, self.frequency, self.duty, self.battery);
+    return use(self.type, self.voltage, self.frequency, self.duty, self.battery, self.offset);
   }
 };
 
@@ -51,6 +52,7 @@ inline constexpr ParameterKey voltage{"supply.voltage", "V", range::not_negative
 inline constexpr ParameterKey amplitude{"supply.amplitude", "V", range::not_negative};
 inline constexpr ParameterKey frequency{"supply.frequency", "Hz", range::positive};
 inline constexpr ParameterKey duty{"supply.duty", "1", range::zero_to_one};
+inline constexpr ParameterKey offset{"supply.offset", "V", range::any};
 }  // namespace supply_key
 
 inline void validate(const Supply<double>& s) {
@@ -76,14 +78,14 @@ S source_resistance(const Supply<S>& s) {
   return s.type == SupplyType::battery ? source_resistance(s.battery) : S(0.0);
 }
 
-/// Voltage [V] at time t [s] that the supply drives through its resistance: of a sine of the amplitude V and the
-/// frequency f [Hz], of pwm of the voltage V while it is switched on; otherwise mean_voltage().
+/// Voltage [V] at time t [s] that the supply drives through its resistance: of a sine of the amplitude V, the offset
+/// V_0 and the frequency f [Hz], of pwm of the voltage V while it is switched on; otherwise mean_voltage().
 /// \f[
-/// v_\mathrm{sine} = V \sin 2 \pi f t, \qquad
+/// v_\mathrm{sine} = V_0 + V \sin 2 \pi f t, \qquad
 /// v_\mathrm{pwm} = \begin{cases} V & f t - \lfloor f t \rfloor < D \\ 0 & \text{otherwise} \end{cases}
 /// \f]
 inline double voltage_at(const Supply<double>& s, double t) {
-  if (is_sine(s.type)) return s.voltage * std::sin(two_pi * s.frequency * t);
+  if (is_sine(s.type)) return s.offset + s.voltage * std::sin(two_pi * s.frequency * t);
   if (s.type == SupplyType::pwm) {
     const double phase = s.frequency * t - std::floor(s.frequency * t);
     return phase < s.duty ? s.voltage : 0.0;

@@ -26,6 +26,12 @@ struct SimulationOptions {
   /// At the start: theta or, of a direct drive, beta [rad], their rate [rad/s], i [A], psi [rad], psi' [rad/s]. Without
   /// inductance the current follows from the voltage, and without hinges there is no pitch.
   double angle = 0.0, speed = 0.0, current = 0.0, pitch_angle = 0.0, pitch_velocity = 0.0;
+  /// The same of wings that twist: tau [rad], tau' [rad/s]; of a piezo behind a compliant transmission x [m], x' [m/s].
+  double twist_angle = 0.0, twist_velocity = 0.0, tip = 0.0, tip_velocity = 0.0;
+
+  Coordinates<double> start() const {
+    return {angle, speed, current, pitch_angle, pitch_velocity, twist_angle, twist_velocity, tip, tip_velocity};
+  }
 };
 
 /// Everything that moves, as numbers to be kept and given back. What commands the voltage is no part of it.
@@ -42,7 +48,8 @@ struct StepOptions {
 
 /// Names of what a state in time holds, those of waveform_columns() without units: "crank_angle" and "crank_speed", of
 /// a direct drive "stroke_angle" and "flapping_velocity"; with an inductance "current"; of wings that pitch on hinges
-/// "pitch_angle" and "pitch_velocity".
+/// "pitch_angle" and "pitch_velocity", of those that twist "twist_angle" and "twist_velocity"; of a piezo behind a
+/// compliant transmission "tip" and "tip_velocity".
 std::vector<std::string> time_state_names(const Vehicle<double>& vehicle);
 
 /// Copies are simulations of their own.

@@ -13,6 +13,7 @@
 #include "wingbeat/cycle/steady_options.hpp"
 #include "wingbeat/cycle/waveform_row.hpp"
 #include "wingbeat/parts/supply.hpp"
+#include "wingbeat/vehicle/coordinates.hpp"
 #include "wingbeat/vehicle/forward.hpp"
 
 namespace wingbeat {
@@ -31,11 +32,9 @@ struct TransientOptions {
   /// take more than a million.
   long max_steps = 2000000;
 
-  double crank_angle = 0.0;     ///< theta at the start [rad]
-  double crank_speed = 0.0;     ///< omega at the start [rad/s]; negative turns backwards
-  double current = 0.0;         ///< i at the start [A]; without inductance it follows from the voltage instead
-  double pitch_angle = 0.0;     ///< psi at the start, of wings that pitch [rad]
-  double pitch_velocity = 0.0;  ///< psi' at the start [rad/s]
+  /// How everything is at the start; a negative crank speed turns backwards, without inductance the current follows
+  /// from the voltage instead.
+  Coordinates<double> start = {};
 
   bool record = false;           ///< keep samples (and events of supply switching)
   double record_interval = 0.0;  ///< time between samples [s]; 0: every step of the integrator
@@ -90,9 +89,7 @@ struct TransientResult {
 
   double crank_speed = 0.0;                ///< omega at theta = 0 (mod 2 pi) at the end of the last cycle [rad/s]
   double current = 0.0;                    ///< i there [A]: with crank_speed the state of the periodic orbit
-  double stroke_angle = 0.0;               ///< direct drive: beta there [rad]
-  double pitch_angle = 0.0;                ///< of wings that pitch: psi there [rad]
-  double pitch_velocity = 0.0;             ///< psi' there [rad/s]
+  Coordinates<double> state{};             ///< everything there; a crank's angle is 0
   std::optional<Metrics<double>> metrics;  ///< of the last cycle; floquet_multiplier_max is `absent`
   CycleIntegrals<double> integrals{};      ///< behind the metrics, per cycle
   int averaged_cycles = 0;  ///< cycles behind the metrics: 1, or several where the supply has no period in common

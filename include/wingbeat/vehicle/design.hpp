@@ -9,14 +9,17 @@
 #include "wingbeat/core/members.hpp"
 #include "wingbeat/core/names.hpp"
 #include "wingbeat/parts/blade_element.hpp"
+#include "wingbeat/parts/electronics.hpp"
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
 #include "wingbeat/parts/motor_thermal.hpp"
+#include "wingbeat/parts/piezo.hpp"
 #include "wingbeat/parts/planform.hpp"
 #include "wingbeat/parts/stroke_table.hpp"
 #include "wingbeat/parts/supply.hpp"
 #include "wingbeat/parts/transmission_type.hpp"
 #include "wingbeat/parts/wing_mass.hpp"
+#include "wingbeat/parts/wing_torsion.hpp"
 
 namespace wingbeat {
 
@@ -60,11 +63,39 @@ struct MotorDesign {
   S gear_damping = S(0);                  ///< b_G [N m s/rad], only with gear_ratio
   std::optional<S> gear_efficiency = {};  ///< eta [1]; 1 unless given
   MotorThermalDesign<S> thermal = {};
+  S core_torque = S(0);   ///< c_h of the core loss [N m], where the constants are
+  S core_damping = S(0);  ///< c_e of the core loss [N m s/rad], where the constants are
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.gear_ratio, self.constants, self.gear_inertia, self.gear_damping, self.gear_efficiency,
-               self.thermal);
+               self.thermal, self.core_torque, self.core_damping);
+  }
+};
+
+/// [electronics] of a brushless motor: there as soon as the efficiency is given.
+template <Scalar S>
+struct ElectronicsDesign {
+  std::optional<S> efficiency;   ///< eta_esc [1]
+  std::optional<S> current_max;  ///< i_max of one motor [A]; none unless given
+  bool regenerates = false;      ///< current may flow back
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.efficiency, self.current_max, self.regenerates);
+  }
+};
+
+/// [piezo] in the place of [motor]: there as soon as the force per volt is given.
+template <Scalar S>
+struct PiezoDesign {
+  std::optional<S> force_per_volt;    ///< kappa [N/V]
+  Piezo<S> constants;                 ///< what else is required of it
+  std::optional<S> series_stiffness;  ///< k_s [N/m]; a rigid transmission unless given
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.force_per_volt, self.constants, self.series_stiffness);
   }
 };
 
@@ -122,6 +153,18 @@ struct SpringDesign {
   }
 };
 
+/// [wing.torsion]: linear twist along the span, a degree of freedom as soon as its stiffness is given.
+template <Scalar S>
+struct TorsionDesign {
+  std::optional<S> stiffness;  ///< k_tau of one wing [N m/rad]
+  S damping = S(0);            ///< c_tau of one wing [N m s/rad]
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.stiffness, self.damping);
+  }
+};
+
 /// [wing]
 template <Scalar S>
 struct WingDesign {
@@ -136,11 +179,12 @@ struct WingDesign {
   S rib_count = S(0);              ///< n_r, ribs of one wing, only with areal_density
   std::optional<S> pitch_inertia;  ///< I_psi of one wing about its leading edge [kg m2], only with a pitch hinge
   std::optional<S> mass_product;   ///< P = integral r x dm of one wing [kg m2], only with a pitch hinge
+  TorsionDesign<S> torsion;
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.count, self.inertia, self.planform, self.resonance, self.areal_density, self.spar_density,
-               self.rib_density, self.rib_count, self.pitch_inertia, self.mass_product);
+               self.rib_density, self.rib_count, self.pitch_inertia, self.mass_product, self.torsion);
   }
 };
 
@@ -154,11 +198,12 @@ struct PitchDesign {
   bool rotational_lift = true;   ///< the force that a pitching wing's circulation adds; see rotation_with()
   S damping_coefficient = S(0);  ///< C_rd [1]; see rotation_with()
   S edge_suction = S(0);         ///< s_L of the added mass [1]
+  S friction = S(0);             ///< T_psi of one hinge [N m]
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.stiffness, self.damping, self.stop, self.rotational_lift, self.damping_coefficient,
-               self.edge_suction);
+               self.edge_suction, self.friction);
   }
 };
 
@@ -213,14 +258,22 @@ struct Design {
   WingDesign<S> wing;
   PitchDesign<S> pitch;
   AerodynamicsDesign<S> aerodynamics;
+  ElectronicsDesign<S> electronics = {};
+  PiezoDesign<S> piezo = {};
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.name, self.mass, self.motors, self.masses, self.bench_torque_constant, self.supply,
                self.supply_resonance_ratio, self.motor, self.transmission, self.friction, self.spring, self.wing,
-               self.pitch, self.aerodynamics);
+               self.pitch, self.aerodynamics, self.electronics, self.piezo);
   }
 };
+
+/// True where the pitch of the wings follows the stroke by the pitch law: neither a hinge nor torsion is stated.
+template <Scalar S>
+bool follows_pitch_law(const Design<S>& design) {
+  return !design.pitch.stiffness && !design.wing.torsion.stiffness;
+}
 
 /// True where hinge springs are stated.
 template <Scalar S>

@@ -7,45 +7,12 @@
 #include <cstddef>
 
 #include "wingbeat/parts/pitching_wings.hpp"
+#include "wingbeat/parts/twisting_wings.hpp"
+#include "wingbeat/vehicle/actuator.hpp"
 #include "wingbeat/vehicle/motion.hpp"
+#include "wingbeat/vehicle/unknowns.hpp"
 
 namespace wingbeat {
-
-/// What moves. Of a direct drive the shaft angle is the stroke angle; of wings under the pitch law the pitch is 0.
-template <Scalar S>
-struct Coordinates {
-  S angle = S(0.0);           ///< theta, or beta of a direct drive [rad]
-  S speed = S(0.0);           ///< its rate omega [rad/s]
-  S current = S(0.0);         ///< i [A]; without inductance it follows from the voltage instead
-  S pitch_angle = S(0.0);     ///< psi [rad]
-  S pitch_velocity = S(0.0);  ///< psi' [rad/s]
-};
-
-inline constexpr std::size_t max_unknowns = 5;
-
-/// Where the coordinates of a vehicle are among its unknowns: in the order of Coordinates, without those that it does
-/// not have.
-struct UnknownIndices {
-  bool rotates, inductive, pitching;
-  std::size_t current, pitch, count;
-
-  template <Scalar S>
-  explicit UnknownIndices(const Vehicle<S>& v)
-      : rotates(drive_of(v).rotates),
-        inductive(has_current_state(v)),
-        pitching(pitches(v)),
-        current(2),
-        pitch(inductive ? 3 : 2),
-        count(2u + (inductive ? 1u : 0u) + (pitching ? 2u : 0u)) {}
-
-  template <Scalar S>
-  Coordinates<S> coordinates(const S* y) const {
-    Coordinates<S> c{y[0], y[1]};
-    if (inductive) c.current = y[current];
-    if (pitching) c.pitch_angle = y[pitch], c.pitch_velocity = y[pitch + 1];
-    return c;
-  }
-};
 
 /// Geometry and springs at a shaft angle [rad], of any drive.
 template <Scalar S>
@@ -56,19 +23,20 @@ Configuration<S> configuration_at_angle(const Vehicle<S>& v, const S& angle) {
   return {direct_kinematics(v.transmission.direct), v.wing_count * v.spring.stiffness * angle};
 }
 
-/// The instant at these coordinates where the supply drives `supply_voltage` [V], in a mode of which `held` and `slip`
+/// The instant at these coordinates under the supply, in a mode of which `held`, `slip` and the electronics' branch
 /// matter: what stands still has no speed.
 template <Scalar S>
-MotionState<S> instant_at(const Vehicle<S>& v, const Coordinates<S>& place, const S& supply_voltage,
-                          const Mode<S>& mode) {
+FullState<S> instant_at(const Vehicle<S>& v, const Coordinates<S>& place, const SupplyMoment<S>& supply,
+                        const Mode<S>& mode) {
   const S omega = value_of(mode.slip) < 0.0 ? S(0.0) : place.speed;
-  const S i = has_current_state(v) ? place.current : algebraic_current(v, supply_voltage, omega);
-  return {configuration_at_angle(v, place.angle),
-          omega,
-          i,
-          terminal_voltage(v, supply_voltage, i),
-          place.pitch_angle,
-          value_of(mode.held) < 0.0 ? S(0.0) : place.pitch_velocity};
+  const ActuatorAction<S> actuator = actuator_action(v, place, omega, supply, mode);
+  return {{configuration_at_angle(v, place.angle), omega, actuator.current, actuator.voltage, place.pitch_angle,
+           value_of(mode.held) < 0.0 ? S(0.0) : place.pitch_velocity},
+          actuator.load,
+          actuator.inertia,
+          actuator.damped_speed,
+          actuator.tip_acceleration,
+          {place.twist_angle, place.twist_velocity}};
 }
 
 /// What acts, with what belongs to wings that pitch on hinges; 0 under the pitch law. `aero` holds what the air does to
@@ -78,57 +46,95 @@ struct PitchMotion : Motion<S> {
   S pitch_acceleration = S(0.0);  ///< psi'' [rad/s2]
   S hinge_loss = S(0.0);          ///< in the damping of all hinges [W]
   S chordwise_lift = S(0.0);      ///< chordwise_lift() [N]
-  S stop_moment = S(0.0);  ///< with which the wings press on a stop that holds them, towards a positive psi [N m]
+  S stop_moment = S(0.0);         ///< with which the wings press on what holds them, towards a positive psi [N m]
+  S twist_acceleration = S(0.0);  ///< tau'' [rad/s2]
+  S damped_speed = S(0.0);        ///< of which the actuator's damping takes the square [rad/s]
 };
 
 namespace detail {
 
 /// Of crank or shaft that friction holds, under the moment of the wings: no more than the springs' gets through.
+/// `actuator_load`: torque that the actuator takes beside K i [N m].
 template <template <Scalar> class V, Scalar S>
-void stand_still(const V<S>& v, const S& wing_moment, Motion<S>& m, const S& spring_moment) {
+void stand_still(const V<S>& v, const S& wing_moment, Motion<S>& m, const S& spring_moment,
+                 const S& actuator_load = S(0.0)) {
   m.crank_acceleration = m.stroke_acceleration = S(0.0);
   m.stored_moment = spring_moment;
   m.rod_force = (spring_moment + wing_moment) / m.kinematics.wing_jacobian;
-  m.motor_torque = v.motor.torque_constant * m.current;
+  m.motor_torque = v.motor.torque_constant * m.current - actuator_load;
   m.friction_torque = m.motor_torque - m.rod_force * m.kinematics.crank_jacobian;
   if constexpr (ScalarTraits<S>::reads_tables) m.friction_torque = m.friction_torque - v.load_torque;
 }
 
 }  // namespace detail
 
-/// What acts at an instant on wings that pitch on hinges, in a given mode. Of the loads of the air the pitch margin
-/// means nothing.
-template <template <Scalar> class V, Scalar S>
-PitchMotion<S> pitch_motion_at(const V<S>& v, const MotionState<S>& instant, const Mode<S>& mode) {
+/// What the actuator takes from a shaft beside K i, of either kind of instant [N m].
+template <class State>
+auto actuator_load(const State& instant) {
+  if constexpr (requires { instant.load; }) return instant.load;
+  else return decltype(instant.omega)(0.0);
+}
+template <class State>
+auto damped_speed(const State& instant) {
+  if constexpr (requires { instant.damped_speed; }) return instant.damped_speed;
+  else return instant.omega;
+}
+
+/// What acts at an instant on wings that pitch on hinges or twist, in a given mode. Of the loads of the air the pitch
+/// margin means nothing. State: MotionState of wings that do not twist, or FullState.
+template <template <Scalar> class V, Scalar S, class State>
+PitchMotion<S> pitch_motion_at(const V<S>& v, const State& instant, const Mode<S>& mode) {
   const PitchingWings<S>& p = v.pitch;
   const CrankKinematics<S>& k = instant.configuration.kinematics;
   const PitchState<S> state =
       pitch_state<S>(instant.pitch_angle, instant.pitch_velocity, k.stroke_slope * instant.omega);
   const S N_J = v.wing_count * v.wing_inertia;
-  const WingsAtPitch<S> wings = wings_at_pitch(v.wings, p, N_J, state, mode.stroke, mode.turn, mode.held);
-  const AeroLoads<S> aero{wings.aero.angle_of_attack, S(1.0),           S(0.0),
-                          wings.aero.stroke_moment,   wings.aero.power, wings.inertia - N_J};
   PitchMotion<S> m;
-  static_cast<Motion<S>&>(m) = motion_on(v, terms_under(v, instant, {aero, wings.inertia, wings.moment}, mode), mode);
-  if constexpr (ScalarTraits<S>::reads_tables) {
-    if (value_of(mode.slip) < 0.0) detail::stand_still<V, S>(v, wings.moment, m, instant.configuration.spring_moment);
+  const auto take = [&](const WingsAtPitch<S>& wings) {
+    const AeroLoads<S> aero{wings.aero.angle_of_attack, S(1.0),           S(0.0),
+                            wings.aero.stroke_moment,   wings.aero.power, wings.inertia - N_J};
+    static_cast<Motion<S>&>(m) = motion_on(v, terms_under(v, instant, {aero, wings.inertia, wings.moment}, mode), mode);
+    if constexpr (ScalarTraits<S>::reads_tables) {
+      if (value_of(mode.slip) < 0.0) {
+        detail::stand_still<V, S>(v, wings.moment, m, instant.configuration.spring_moment, actuator_load(instant));
+      }
+    }
+    m.pitch_acceleration = wings.free_acceleration + wings.coupling * m.stroke_acceleration;
+    m.hinge_loss = wings.hinge.loss;
+    m.stop_moment =
+        select(mode.held >= S(0.0), S(0.0), S(wings.pitching_moment + wings.coupling_moment * m.stroke_acceleration));
+  };
+  m.damped_speed = damped_speed(instant);
+  if constexpr (requires { instant.twist; }) {
+    if (twists(p.torsion)) {
+      const TwistingWings<S> wings =
+          wings_at_twist(v.wings, p, N_J, state, instant.twist, mode.stroke, mode.turn, mode.held);
+      take(wings);
+      m.twist_acceleration = wings.twist_free + wings.twist_coupling * m.stroke_acceleration;
+      m.aero.lift = wings.steady_lift + wings.lift.stroke * m.stroke_acceleration +
+                    wings.lift.pitch * m.pitch_acceleration + wings.lift.twist * m.twist_acceleration;
+      m.hinge_loss = m.hinge_loss + wings.torsion_loss;
+      m.chordwise_lift = wings.chordwise_lift;
+      return m;
+    }
   }
-  m.pitch_acceleration = wings.free_acceleration + wings.coupling * m.stroke_acceleration;
+  const WingsAtPitch<S> wings = wings_at_pitch(v.wings, p, N_J, state, mode.stroke, mode.turn, mode.held);
+  take(wings);
   m.aero.lift = lift_at_pitch(p, wings, state, m.stroke_acceleration, m.pitch_acceleration);
-  m.hinge_loss = wings.hinge.loss;
   m.chordwise_lift = chordwise_lift(p, state);
-  m.stop_moment =
-      select(mode.held >= S(0.0), S(0.0), S(wings.pitching_moment + wings.coupling_moment * m.stroke_acceleration));
   return m;
 }
 
 /// What acts at an instant, in a given mode.
 template <Scalar S>
-PitchMotion<S> evaluate(const Vehicle<S>& v, const MotionState<S>& instant, const Mode<S>& mode) {
+PitchMotion<S> evaluate(const Vehicle<S>& v, const FullState<S>& instant, const Mode<S>& mode) {
   if (pitches(v)) return pitch_motion_at(v, instant, mode);
   PitchMotion<S> m;
   static_cast<Motion<S>&>(m) = motion_at(v, instant, mode);
-  if (value_of(mode.slip) < 0.0) detail::stand_still(v, S(0.0), m, instant.configuration.spring_moment);
+  if (value_of(mode.slip) < 0.0) {
+    detail::stand_still(v, S(0.0), m, instant.configuration.spring_moment, instant.load);
+  }
+  m.damped_speed = instant.damped_speed;
   return m;
 }
 
@@ -149,21 +155,23 @@ bool force_has_branches(const Vehicle<S>& v) {
 /// A mode with those signs that follow from the instant alone: stroke velocity, pitch velocity, bound of the angle of
 /// attack.
 template <Scalar S>
-Mode<S> with_signs_of_motion(const Vehicle<S>& v, const MotionState<S>& instant, Mode<S> mode) {
+Mode<S> with_signs_of_motion(const Vehicle<S>& v, const FullState<S>& instant, Mode<S> mode) {
   using std::abs;
   const S stroke_velocity = instant.configuration.kinematics.stroke_slope * instant.omega;
   // A shaft that is about to leave rest moves as it will.
   mode.stroke = !drive_of(v).rotates && jumps_at_rest(v) ? mode.direction : sign_of(stroke_velocity);
   if (!drive_of(v).rotates && !jumps_at_rest(v)) mode.direction = mode.stroke;
-  if (pitches(v)) mode.turn = sign_of(instant.pitch_velocity);
-  else mode.pitching = sign_of(pitch_margin(v.wings, S(abs(stroke_velocity))));
+  if (pitches(v)) {
+    // Wings that friction of their joint lets go turn as they will.
+    if (!has_friction(v.pitch.hinge)) mode.turn = sign_of(instant.pitch_velocity);
+  } else mode.pitching = sign_of(pitch_margin(v.wings, S(abs(stroke_velocity))));
   return mode;
 }
 
 /// with_signs_of_motion() and the sign of the gear torque, in which the rod force keeps its sign; `*motion` is what
 /// acts then.
 template <Scalar S>
-Mode<S> on_force_branch(const Vehicle<S>& v, const MotionState<S>& instant, Mode<S> mode, PitchMotion<S>* motion) {
+Mode<S> on_force_branch(const Vehicle<S>& v, const FullState<S>& instant, Mode<S> mode, PitchMotion<S>* motion) {
   mode = with_signs_of_motion(v, instant, mode);
   mode.gear = S(1.0);
   *motion = evaluate(v, instant, mode);
@@ -179,7 +187,7 @@ Mode<S> on_force_branch(const Vehicle<S>& v, const MotionState<S>& instant, Mode
 /// `*motion` is what acts in it. The signs of rod force and gear torque may depend on each other: on one of their
 /// branches both agree (model.md section 9).
 template <Scalar S>
-Mode<S> mode_at(const Vehicle<S>& v, const MotionState<S>& instant, Mode<S> mode, PitchMotion<S>* motion) {
+Mode<S> mode_at(const Vehicle<S>& v, const FullState<S>& instant, Mode<S> mode, PitchMotion<S>* motion) {
   mode = with_signs_of_motion(v, instant, mode);
   for (const double gear : {1.0, -1.0}) {
     mode.gear = S(gear);
@@ -195,12 +203,18 @@ Mode<S> mode_at(const Vehicle<S>& v, const MotionState<S>& instant, Mode<S> mode
   return mode;
 }
 
-/// The wings that pitch at an instant at which the shaft stands.
-template <Scalar S>
-WingsAtPitch<S> wings_standing(const Vehicle<S>& v, const MotionState<S>& instant, const Mode<S>& mode) {
-  return wings_at_pitch(v.wings, v.pitch, S(v.wing_count * v.wing_inertia),
-                        pitch_state<S>(instant.pitch_angle, instant.pitch_velocity, S(0.0)), S(1.0),
-                        sign_of(instant.pitch_velocity), mode.held);
+/// The wings that pitch, or twist, at an instant at which the shaft stands.
+template <Scalar S, class State>
+WingsAtPitch<S> wings_standing(const Vehicle<S>& v, const State& instant, const Mode<S>& mode) {
+  const S N_J = v.wing_count * v.wing_inertia;
+  const PitchState<S> state = pitch_state<S>(instant.pitch_angle, instant.pitch_velocity, S(0.0));
+  const S turn = has_friction(v.pitch.hinge) ? mode.turn : sign_of(instant.pitch_velocity);
+  if constexpr (requires { instant.twist; }) {
+    if (twists(v.pitch.torsion)) {
+      return wings_at_twist(v.wings, v.pitch, N_J, state, instant.twist, S(1.0), turn, mode.held);
+    }
+  }
+  return wings_at_pitch(v.wings, v.pitch, N_J, state, S(1.0), turn, mode.held);
 }
 
 /// T_c, the constant friction that holds the motor at rest, its own included [N m]; that of the mechanism as the motor
@@ -288,6 +302,13 @@ template <Scalar S>
 S pitch_energy(const Vehicle<S>& v, const Coordinates<S>& place, const S& stroke_velocity) {
   using std::abs;
   using std::sin;
+  if (twists(v.pitch.torsion)) {
+    const PitchState<S> state = pitch_state(place.pitch_angle, place.pitch_velocity, stroke_velocity);
+    const TwistState<S> twist{place.twist_angle, place.twist_velocity};
+    return hinge_loads(v.pitch.hinge, place.pitch_angle, place.pitch_velocity).energy +
+           S(0.5) * v.pitch.torsion.stiffness * square(twist.angle) +
+           kinetic_energy(strip_sums(v.wings, v.pitch, S(0.0), state, twist, S(1.0)).inertia, state, twist.velocity);
+  }
   if (pitches(v)) {
     const PitchState<S> state = pitch_state(place.pitch_angle, place.pitch_velocity, stroke_velocity);
     return hinge_loads(v.pitch.hinge, place.pitch_angle, place.pitch_velocity).energy +
@@ -302,119 +323,7 @@ template <Scalar S>
 S stored_energy(const Vehicle<S>& v, const Coordinates<S>& place) {
   const S stroke_velocity = configuration_at_angle(v, place.angle).kinematics.stroke_slope * place.speed;
   return S(0.5) * (v.motor.inertia * square(place.speed) + v.motor.armature_inductance * square(place.current)) +
-         wing_energy(v, place) + pitch_energy(v, place, stroke_velocity);
-}
-
-/// What an impact on a stop does. Works are those of the impulses at the mean of the velocities before and after:
-/// exact, since all velocities change in proportion while the stop takes psi'.
-template <Scalar S>
-struct StopImpact {
-  S shaft_speed;    ///< gained by the crank, or the shaft of a direct drive [rad/s]
-  S rod_impulse;    ///< F^, of the rod force [N s]
-  S motor_work;     ///< that the rotor passes on behind the gearbox, T_m^ omega [J]
-  S gear_work;      ///< lost in the gearbox [J]
-  S friction_work;  ///< lost in the friction that the blow on the rod causes [J]
-  S residual_work;  ///< what the formulation of the transmission fails to conserve [J]
-  S stored_work;    ///< magnitude of the change of N_w J_w beta'^2 / 2 [J]
-  S stop_work;      ///< lost at the stop, >= 0 [J]
-  S lift;           ///< impulse of the lift [N s]
-};
-
-/// The impact of a vehicle at an instant at which its wings are at a stop and move on to it; the shaft moves on in
-/// `direction` (the sign of omega), and the pitch velocity falls to `left` [rad/s]. The impulse on the rod, F^ = -e J d
-/// omega / (h + s mu r_e), has the sign of -M_bp (psi' - left); e as in IntermediateTerms. With \f$\Delta\f$ for what a
-/// velocity gains and \f$\bar\omega = \omega + \tfrac12 \Delta\omega\f$ (model.md section 12):
-/// \f[
-/// \begin{aligned}
-/// e J \Delta\omega &= -\hat F (h + s \mu r_\mathrm{e}), \qquad
-/// M_{bb} \Delta\dot\beta + M_{bp} \Delta\dot\psi = \hat F g, \qquad \Delta\dot\beta = B_1 \Delta\omega \cr
-/// W_\mathrm{motor} &= -e J \Delta\omega\, \bar\omega, \qquad W_\mathrm{gear} = -(1 - e) J \Delta\omega\, \bar\omega
-/// \cr W_\mathrm{friction} &= \mu r_\mathrm{e} |\hat F \bar\omega|, \qquad W_\mathrm{residual} = \hat F (h - g B_1)\,
-/// \bar\omega
-/// \end{aligned}
-/// \f]
-template <template <Scalar> class V, Scalar S>
-StopImpact<S> stop_impact(const V<S>& v, const MotionState<S>& instant, const S& direction, const S& left = S(0.0)) {
-  const PitchingWings<S>& p = v.pitch;
-  const CrankKinematics<S>& k = instant.configuration.kinematics;
-  const S &omega = instant.omega, &velocity = instant.pitch_velocity;
-  const PitchState<S> state = pitch_state<S>(instant.pitch_angle, velocity, k.stroke_slope * omega);
-  const PitchInertia<S> m = pitch_inertia<S>(p, v.wing_count * v.wing_inertia, state);
-  const S taken = velocity - left;
-  const S blow = m.bp * taken;
-  const S friction = -sign_of(blow) * direction * v.friction.radius, lever = k.crank_jacobian + friction;
-  const S& J = v.motor.inertia;
-  S ratio(1.0);
-  if (has_gear_loss(v.motor)) ratio = gear_torque_ratio(v.motor, S(-sign_of(S(blow * lever)) * direction));
-  const S eJ = ratio * J;
-  StopImpact<S> impact;
-  impact.shaft_speed = blow * lever / (eJ * k.wing_jacobian + m.bb * k.stroke_slope * lever);
-  const S stroke_gain = k.stroke_slope * impact.shaft_speed, mean_speed = omega + S(0.5) * impact.shaft_speed;
-  impact.rod_impulse = (m.bb * stroke_gain - blow) / k.wing_jacobian;
-  const S rotor_work = -J * impact.shaft_speed * mean_speed;
-  impact.motor_work = ratio * rotor_work;
-  impact.gear_work = (S(1.0) - ratio) * rotor_work;
-  impact.friction_work = impact.rod_impulse * friction * mean_speed;
-  impact.residual_work = impact.rod_impulse * (k.crank_jacobian - k.wing_jacobian * k.stroke_slope) * mean_speed;
-  const S stored = v.wing_count * v.wing_inertia * stroke_gain * k.stroke_slope * mean_speed;
-  impact.stored_work = sign_of(stored) * stored;
-  impact.stop_work = S(0.5) * (velocity + left) * (m.pp * taken - m.bp * stroke_gain);
-  impact.lift = (p.air.p * taken - p.air.r * stroke_gain * state.cos_psi) * state.sin_psi;
-  return impact;
-}
-
-/// The impact where friction holds crank or shaft, and the stroke with it, against the blow.
-template <template <Scalar> class V, Scalar S>
-StopImpact<S> stop_impact_standing(const V<S>& v, const MotionState<S>& instant) {
-  const PitchingWings<S>& p = v.pitch;
-  const S& velocity = instant.pitch_velocity;
-  const PitchState<S> state = pitch_state<S>(instant.pitch_angle, velocity, S(0.0));
-  const PitchInertia<S> m = pitch_inertia<S>(p, v.wing_count * v.wing_inertia, state);
-  const S none(0.0);
-  return {none,
-          -m.bp * velocity / instant.configuration.kinematics.wing_jacobian,
-          none,
-          none,
-          none,
-          none,
-          none,
-          S(0.5) * m.pp * square(velocity),
-          p.air.p * velocity * state.sin_psi};
-}
-
-/// The wings meet the stop that they are at: `*instant` becomes the instant after it, and of `*mode` the direction and
-/// whether friction still holds the shaft. A shaft that the blow brings to rest turns back where the lever of the rod
-/// exceeds that of friction, as does one that friction holds; else the stop takes what is left. use(impact) is called
-/// for each part of it.
-template <Scalar S, class Use>
-void meet_stop(const Vehicle<S>& v, MotionState<S>* instant, Mode<S>* mode, const Use& use) {
-  const auto pass = [&](const StopImpact<S>& impact, const S& left) {
-    instant->omega = instant->omega + impact.shaft_speed;
-    instant->pitch_velocity = left;
-    if (value_of(impact.shaft_speed) != 0.0) mode->slip = S(1.0);
-    use(impact);
-  };
-  if (value_of(instant->omega) != 0.0) {
-    const S direction = sign_of(instant->omega);
-    const StopImpact<S> whole = stop_impact(v, *instant, direction);
-    if (jumps_at_rest(v) && value_of(direction) * value_of(S(instant->omega + whole.shaft_speed)) < 0.0) {
-      const S left = (S(1.0) + instant->omega / whole.shaft_speed) * instant->pitch_velocity;
-      pass(stop_impact(v, *instant, direction, left), left);
-      instant->omega = S(0.0);
-    } else {
-      pass(whole, S(0.0));
-    }
-  }
-  if (value_of(instant->omega) == 0.0 && value_of(instant->pitch_velocity) != 0.0) {
-    using std::cos;
-    const S coupling = (v.pitch.mass_product + v.pitch.air.rp) * cos(instant->pitch_angle);
-    const S direction =
-        sign_of(S(coupling * instant->pitch_velocity * instant->configuration.kinematics.crank_jacobian));
-    const StopImpact<S> turning = stop_impact(v, *instant, direction);
-    pass(value_of(direction) * value_of(turning.shaft_speed) > 0.0 ? turning : stop_impact_standing(v, *instant),
-         S(0.0));
-  }
-  if (value_of(instant->omega) != 0.0) mode->direction = sign_of(instant->omega);
+         wing_energy(v, place) + pitch_energy(v, place, stroke_velocity) + piezo_energy(v, place);
 }
 
 }  // namespace wingbeat

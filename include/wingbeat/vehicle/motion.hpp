@@ -17,13 +17,15 @@ struct Mode {
   S pitching = S(1.0);      ///< -1 where the angle of attack is at its lower bound
   S gear = S(1.0);          ///< sign of T_g omega: -1 where the load drives the motor
   S turn = S(1.0);          ///< sign of psi', of wings that pitch on hinges
-  S held = S(1.0);          ///< -1 where a stop holds such wings
+  S held = S(1.0);          ///< -1 where a stop, or friction of their joint, holds such wings
   S slip = S(1.0);          ///< -1 where friction holds crank or shaft
+  S bridge = S(1.0);        ///< -1 where electronics block a current that would flow back
+  S limit = S(1.0);         ///< -1 where they limit the current
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.stroke, self.force, self.direction, self.stored_power, self.pitching, self.gear, self.turn,
-               self.held, self.slip);
+               self.held, self.slip, self.bridge, self.limit);
   }
 };
 
@@ -144,8 +146,10 @@ struct IntermediateTerms {
 /// D &= e \left( K i - b\, \omega - T_\mathrm{c,m} \operatorname{sign}\omega \right) - T_\mathrm{l} - T_\mathrm{x}
 /// \end{aligned}
 /// \f]
-template <template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline IntermediateTerms<S> terms_under(const V<S>& v, const MotionState<S>& instant,
+///
+/// State: MotionState, or FullState, whose actuator takes the torque \f$T_\mathrm{act}\f$ from D and adds to J.
+template <template <Scalar> class V, Scalar S, class State>
+[[gnu::always_inline]] inline IntermediateTerms<S> terms_under(const V<S>& v, const State& instant,
                                                                const StrokeLoads<S>& loads, const Mode<S>& mode) {
   const CrankKinematics<S>& k = instant.configuration.kinematics;
   IntermediateTerms<S> terms;
@@ -169,6 +173,10 @@ template <template <Scalar> class V, Scalar S>
   }
 
   if constexpr (ScalarTraits<S>::reads_tables) terms.drive = terms.drive - v.load_torque;
+  if constexpr (requires { instant.load; }) {
+    terms.drive = terms.drive - instant.load;
+    terms.inertia = terms.inertia + instant.inertia;
+  }
 
   // F = A omega' + C of model.md, both sides times g, which saves dividing by it twice.
   terms.A_g = loads.inertia * k.stroke_slope;
@@ -179,9 +187,8 @@ template <template <Scalar> class V, Scalar S>
 }
 
 /// terms_under() of wings under the pitch law, `every_law` as in aero_loads().
-template <bool every_law = true, template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline IntermediateTerms<S> terms_at(const V<S>& v, const MotionState<S>& instant,
-                                                            const Mode<S>& mode) {
+template <bool every_law = true, template <Scalar> class V, Scalar S, class State>
+[[gnu::always_inline]] inline IntermediateTerms<S> terms_at(const V<S>& v, const State& instant, const Mode<S>& mode) {
   const S stroke_velocity = instant.configuration.kinematics.stroke_slope * instant.omega;
   return terms_under(v, instant, stroke_loads<every_law>(v, stroke_velocity, mode), mode);
 }
@@ -235,8 +242,8 @@ template <template <Scalar> class V, Scalar S>
 }
 
 /// What acts at an instant on wings under the pitch law, in a given mode.
-template <template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const MotionState<S>& instant, const Mode<S>& mode) {
+template <template <Scalar> class V, Scalar S, class State>
+[[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const State& instant, const Mode<S>& mode) {
   return motion_on(v, terms_at(v, instant, mode), mode);
 }
 
@@ -290,6 +297,9 @@ inline constexpr double quasi_steady_lag = 1e-9;
 /// inductance.
 template <template <Scalar> class V, Scalar S>
 bool has_current_state(const V<S>& v) {
+  if constexpr (requires { v.piezo; }) {
+    if (is_given(v.piezo)) return false;
+  }
   const double L = value_of(v.motor.armature_inductance), R = value_of(circuit_resistance(v));
   const double K = value_of(v.motor.torque_constant);
   const double rate = std::fmax(K * K / (R * value_of(v.motor.inertia)), two_pi * value_of(v.drive_frequency));

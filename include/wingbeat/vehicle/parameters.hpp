@@ -32,8 +32,8 @@ struct ParameterText {
   /// The choice this parameter belongs to, "friction.type = viscous" with "|" between values, or a parameter that must
   /// be given too, "motor.gear_ratio"; empty: belongs everywhere.
   std::string_view only_with = {};
-  /// The parameter that makes a required one unnecessary: where it is given, or, for the numbers of a section whose
-  /// name it is, where it holds a name.
+  /// The parameters, with "|" between them, of which one makes a required one unnecessary: where it is given, or, for
+  /// the numbers of a section whose name it is, where it holds a name.
   std::string_view required_unless = {};
 
   bool has_alternative() const { return !alternatives[0].empty(); }

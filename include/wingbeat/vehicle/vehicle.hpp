@@ -6,9 +6,11 @@
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/parts/any_transmission.hpp"
 #include "wingbeat/parts/blade_element.hpp"
+#include "wingbeat/parts/electronics.hpp"
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
 #include "wingbeat/parts/motor_thermal.hpp"
+#include "wingbeat/parts/piezo.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/parts/wing_limits.hpp"
@@ -42,17 +44,20 @@ struct Vehicle {
   /// one. SIMD packs do not know it.
   S load_torque = S(0);
   WingLimits<S> wing_limits;  ///< beyond which the wings or their coefficients are no longer what the equations say
+  S voltage_offset = S(0);    ///< V_0 of a sine supply [V]
+  Electronics<S> electronics;
+  Piezo<S> piezo;  ///< in place of the motor, of which `motor` then has inertia and damping, about stroke angle zero
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.voltage, self.motor, self.transmission, self.friction, self.spring, self.wing_count,
                self.wing_inertia, self.wings, self.source_resistance, self.drive_frequency, self.thermal, self.motors,
-               self.pitch, self.load_torque, self.wing_limits);
+               self.pitch, self.load_torque, self.wing_limits, self.voltage_offset, self.electronics, self.piezo);
   }
 };
 
-/// True where pitch is a degree of freedom (model.md section 12) instead of following the stroke by the pitch law. The
-/// states of such vehicles are two more.
+/// True where pitch, or the torsion of wings that are clamped at their root, is a degree of freedom (model.md sections
+/// 12, 16) instead of following the stroke by the pitch law.
 template <Scalar S>
 bool pitches(const Vehicle<S>& v) {
   return value_of(v.pitch.pitch_inertia) > 0.0;
@@ -96,14 +101,20 @@ MotorThermal<S> motor_thermal_of(const MotorThermalDesign<S>& t) {
   return thermal;
 }
 
-/// Wings that pitch on the hinges that a design describes, `count` of them, in air of that density [kg/m3].
+/// Wings that pitch on the hinges that a design describes, or twist, `count` of them, in air of that density [kg/m3].
 template <Scalar S>
 PitchingWings<S> pitching_wings_of(const Design<S>& design, const S& count, const S& air_density) {
   const PitchDesign<S>& p = design.pitch;
+  const TorsionDesign<S>& torsion = design.wing.torsion;
   PitchingWings<S> wings;
-  PitchHinge<S> hinge{*p.stiffness, p.damping};
+  PitchHinge<S> hinge{p.stiffness ? *p.stiffness : S(0.0), p.damping};
   if (p.stop) hinge.stop = *p.stop;
+  if (!p.stiffness) hinge.stop = S(0.0);
+  if (p.stiffness) hinge.friction = p.friction;
   wings.hinge = hinges_together(hinge, count);
+  if (torsion.stiffness) {
+    wings.torsion = wing_torsion(design.wing.planform, count, *torsion.stiffness, torsion.damping);
+  }
   if (const std::optional<WingMass<S>> drawn = wing_mass(design.wing)) {
     wings.pitch_inertia = count * drawn->pitch_inertia;
     wings.mass_product = count * drawn->mass_product;
@@ -135,6 +146,18 @@ WingLimits<S> wing_limits_of(const Design<S>& design, const S& count, Condition 
   return limits;
 }
 
+/// The piezo that a design describes in the place of a motor, `count` of them, and what it is about the stroke angle
+/// zero: \f$J = m_\mathrm{a} / T_1^2\f$, \f$b = c_\mathrm{a} / T_1^2\f$.
+template <Scalar S>
+void set_piezo(Vehicle<S>& v, const PiezoDesign<S>& d, const S& count) {
+  Piezo<S> one = d.constants;
+  one.force_per_volt = *d.force_per_volt;
+  if (d.series_stiffness) one.series_stiffness = *d.series_stiffness;
+  v.piezo = side_by_side(one, count);
+  const S per_ratio = S(1.0) / square(v.piezo.transmission_ratio);
+  v.motor = {S(0.0), S(0.0), S(0.0), v.piezo.mass * per_ratio, v.piezo.damping * per_ratio};
+}
+
 /// The vehicle that a design describes, in a condition, its motor's constants as stated, at the reference temperature.
 /// Does not check ranges: validate(design) does.
 template <Scalar S>
@@ -143,13 +166,22 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   v.voltage = mean_voltage(design.supply);
   v.source_resistance = source_resistance(design.supply);
   const MotorDesign<S>& m = design.motor;
-  v.motor = m.gear_ratio ? at_output_shaft(GearMotor<S>{*m.gear_ratio, m.constants, m.gear_inertia, m.gear_damping})
-                         : m.constants;
+  Motor<S> constants = m.constants;
+  constants.friction_torque = constants.friction_torque + m.core_torque;
+  constants.viscous_damping = constants.viscous_damping + m.core_damping;
+  v.motor = m.gear_ratio ? at_output_shaft(GearMotor<S>{*m.gear_ratio, constants, m.gear_inertia, m.gear_damping})
+                         : constants;
   if (m.gear_efficiency) v.motor.gear_efficiency = *m.gear_efficiency;
   v.thermal = motor_thermal_of(m.thermal);
   const S& M = v.motors = design.motors;
   v.motor = side_by_side(v.motor, M);
   if (heats_up(v.thermal)) v.thermal = side_by_side(v.thermal, M);
+  if (design.piezo.force_per_volt) set_piezo(v, design.piezo, M);
+  if (design.electronics.efficiency) {
+    v.electronics.efficiency = *design.electronics.efficiency;
+    v.electronics.regenerates = design.electronics.regenerates;
+    if (design.electronics.current_max) v.electronics.current_max = M * *design.electronics.current_max;
+  }
 
   const bool direct = design.transmission.type == TransmissionType::direct;
   v.transmission = transmission_of(design.transmission);
@@ -176,6 +208,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   const S inertia = rotor_share + wing_inertia;
   const bool sine = is_sine(design.supply.type);
   v.drive_frequency = sine ? design.supply.frequency : S(0.0);
+  v.voltage_offset = sine ? design.supply.offset : S(0.0);
   if (design.spring.resonance) stiffness = stiffness_for_resonance(inertia, *design.spring.resonance);
   if (design.spring.resonance_ratio) {
     stiffness = stiffness_for_resonance<S>(inertia, *design.spring.resonance_ratio * design.supply.frequency);
@@ -189,7 +222,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   const bool air = condition == Condition::air;
   const ChordMoments<S> moments = chord_moments(design.wing.planform, design.wing.count);
   v.wings.air_density = air ? design.aerodynamics.air_density : S(0.0);
-  v.wings.pitch_coefficient = design.pitch.stiffness ? S(0.0) : design.aerodynamics.pitch_coefficient;
+  v.wings.pitch_coefficient = follows_pitch_law(design) ? design.aerodynamics.pitch_coefficient : S(0.0);
   v.wings.s2 = wings ? S(M * moments.s2) : S(0.0);
   v.wings.s3 = wings ? S(M * moments.s3) : S(0.0);
   v.wings.coefficients = design.aerodynamics.coefficients;
@@ -198,7 +231,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
     const S s22 = M * squared_chord_moment(design.wing.planform, design.wing.count);
     v.wings.added_inertia = added_inertia_of(v.wings.air_density, s22);
   }
-  if (design.pitch.stiffness && wings) v.pitch = pitching_wings_of(design, v.wing_count, v.wings.air_density);
+  if (!follows_pitch_law(design) && wings) v.pitch = pitching_wings_of(design, v.wing_count, v.wings.air_density);
   v.wing_limits = wing_limits_of(design, v.wing_count, condition);
   return v;
 }

@@ -39,6 +39,7 @@ COLOURS: dict[str, str] = {
     "motor_friction": "#882255",
     "gearbox": "#009e73",
     "hinges": "#8c6d46",
+    "electronics": "#5f6b7a",
     "friction": "#cc79a7",
     "residual": "#bbbbbb",
     "aerodynamic": "#56b4e9",

@@ -108,7 +108,7 @@ def _since_reversal(waves: xarray.Dataset) -> tuple[Any, Any]:
 
 #: Parts of the input as they follow each other in a bar: field of EnergyBalance, name, colour.
 _PARTS = (
-    ("copper", "copper", "copper"), ("viscous", "viscous", "viscous"),
+    ("electronics", "electronics", "electronics"), ("copper", "copper", "copper"), ("viscous", "viscous", "viscous"),
     ("motor_friction", "motor friction", "motor_friction"), ("gear", "gearbox", "gearbox"),
     ("hinge", "hinges", "hinges"), ("friction", "friction", "friction"), ("aerodynamic", "aerodynamic", "aerodynamic"),
     ("residual", "residual", "residual"),

@@ -57,6 +57,9 @@ class WithMetrics:
     def power_gear(self) -> Quantity | None:
         """Mean loss of the gearbox under load [W]."""
     @property
+    def power_electronics(self) -> Quantity | None:
+        """Mean loss of the electronics, of a piezo with its dielectric's [W]."""
+    @property
     def power_loss(self) -> Quantity | None:
         """Mean total loss [W]."""
     @property

@@ -33,7 +33,7 @@ class Event(NamedTuple):
     -------
     >>> start = wb.read("data/designs/friction2022.toml").simulate()
     >>> start.events[0].kind
-    'breakaway'
+    'force-sign-change'
     """
 
     time: float  #: [s]
@@ -61,6 +61,7 @@ class EnergyBalance(NamedTuple):
     aerodynamic: float  #: to the air [W]
     residual: float  #: what the transmission's formulation fails to conserve; 0 for virtual-work
     imbalance: float  #: the input minus all of these: the error of the solution
+    electronics: float = 0.0  #: loss of the electronics, of a piezo with its dielectric's [W]
 
     @property
     def error(self) -> float:

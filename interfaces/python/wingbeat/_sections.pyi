@@ -46,6 +46,12 @@ class SupplySection(Section):
         Only with supply.type = sine or battery-sine.
         """
     @property
+    def offset(self) -> Quantity | None:
+        """V_0, constant part of the voltage beside the sine.
+        [V] Range: any. Default: 0 V.
+        Only with supply.type = sine or battery-sine.
+        """
+    @property
     def frequency(self) -> Quantity | None:
         """drive frequency (sine) or switching frequency (pwm).
         [Hz] Range: > 0. Default: required or resonance_ratio.
@@ -148,34 +154,44 @@ class MotorSection(Section):
         Number. Range: > 0, <= 1. Default: 1.
         """
     @property
-    def armature_resistance(self) -> Quantity:
+    def armature_resistance(self) -> Quantity | None:
         """R_a, armature resistance.
-        [ohm] Range: > 0. Default: required.
+        [ohm] Range: > 0. Default: required unless piezo.force_per_volt.
         """
     @property
-    def armature_inductance(self) -> Quantity:
+    def armature_inductance(self) -> Quantity | None:
         """L_a, armature inductance; 0, or a lag of the current below 1e-9 rad, makes it algebraic.
-        [H] Range: >= 0. Default: required.
+        [H] Range: >= 0. Default: required unless piezo.force_per_volt.
         """
     @property
-    def torque_constant(self) -> Quantity:
+    def torque_constant(self) -> Quantity | None:
         """K at the output shaft; K_b at the motor shaft with gear_ratio.
-        [N m/A] Range: > 0. Default: required.
+        [N m/A] Range: > 0. Default: required unless piezo.force_per_volt.
         """
     @property
-    def inertia(self) -> Quantity:
+    def inertia(self) -> Quantity | None:
         """J, rotor and gearbox at the output shaft; J_m of the rotor with gear_ratio.
-        [kg m2] Range: > 0. Default: required.
+        [kg m2] Range: > 0. Default: required unless piezo.force_per_volt.
         """
     @property
-    def viscous_damping(self) -> Quantity:
+    def viscous_damping(self) -> Quantity | None:
         """b, motor and gearbox at the output shaft; b_m of the motor with gear_ratio.
-        [N m s/rad] Range: >= 0. Default: required.
+        [N m s/rad] Range: >= 0. Default: required unless piezo.force_per_volt.
         """
     @property
     def friction_torque(self) -> Quantity:
         """constant friction torque of the motor itself, before its gearbox, at the motor shaft with gear_ratio; in addition to every friction law, and it heats the motor.
         [N m] Range: >= 0. Default: 0 N m.
+        """
+    @property
+    def core_torque(self) -> Quantity:
+        """c_h, hysteresis of a brushless motor's core: a constant torque against its speed, at the motor shaft with gear_ratio; counts as the motor's own friction.
+        [N m] Range: >= 0. Default: 0 N m.
+        """
+    @property
+    def core_damping(self) -> Quantity:
+        """c_e, eddy currents of a brushless motor's core: a torque that grows with the speed, at the motor shaft with gear_ratio; counts as viscous damping.
+        [N m s/rad] Range: >= 0. Default: 0 N m s/rad.
         """
     @property
     def mass(self) -> Quantity | None:
@@ -235,6 +251,92 @@ class MotorSection(Section):
         """tau_c, of the case over the air, for `wingbeat endurance`.
         [s] Range: > 0. Default: none.
         Only with motor.thermal_resistance_winding.
+        """
+
+class ElectronicsSection(Section):
+    @property
+    def efficiency(self) -> Quantity | None:
+        """eta_esc of a brushless motor's electronics, input over what the motor takes; given, no current flows back into the supply.
+        Number. Range: > 0, <= 1. Default: none: no electronics.
+        """
+    @property
+    def current_max(self) -> Quantity | None:
+        """i_max to which they limit the current of one motor.
+        [A] Range: > 0. Default: none.
+        Only with electronics.efficiency.
+        """
+    @property
+    def regeneration(self) -> bool:
+        """current may flow back: where the back-EMF exceeds the voltage the motor brakes.
+        Range: true or false. Default: false.
+        Only with electronics.efficiency.
+        """
+
+class PiezoSection(Section):
+    @property
+    def force_per_volt(self) -> Quantity | None:
+        """kappa of a piezo bimorph that swings the wings in the place of a motor: force at its tip per volt.
+        [N/V] Range: > 0. Default: none: a motor.
+        """
+    @property
+    def voltage_factor(self) -> Quantity | None:
+        """kappa_1: the force grows as kappa (1 + kappa_1 abs(V)) V.
+        [1/V] Range: >= 0. Default: 0 1/V.
+        Only with piezo.force_per_volt.
+        """
+    @property
+    def stiffness(self) -> Quantity | None:
+        """k_a of the bimorph at its tip.
+        [N/m] Range: > 0. Default: required.
+        Only with piezo.force_per_volt.
+        """
+    @property
+    def damping(self) -> Quantity | None:
+        """c_a of the bimorph at its tip.
+        [N s/m] Range: >= 0. Default: 0 N s/m.
+        Only with piezo.force_per_volt.
+        """
+    @property
+    def mass(self) -> Quantity | None:
+        """m_a, mass that moves with the tip.
+        [kg] Range: > 0. Default: required.
+        Only with piezo.force_per_volt.
+        """
+    @property
+    def capacitance(self) -> Quantity | None:
+        """C of the bimorph.
+        [F] Range: >= 0. Default: 0 F.
+        Only with piezo.force_per_volt.
+        """
+    @property
+    def loss_tangent(self) -> Quantity | None:
+        """tan d of its dielectric.
+        Number. Range: >= 0. Default: 0.
+        Only with piezo.force_per_volt.
+        """
+    @property
+    def recovered_share(self) -> Quantity | None:
+        """share of the energy that the capacitance gives back in a cycle which the electronics recover.
+        Number. Range: 0 to 1. Default: 1.
+        Only with piezo.force_per_volt.
+        """
+    @property
+    def transmission_ratio(self) -> Quantity | None:
+        """T_1: stroke angle over tip displacement, beta = T_1 x + T_3 x^3.
+        [rad/m] Range: > 0. Default: required.
+        Only with piezo.force_per_volt.
+        """
+    @property
+    def transmission_cubic(self) -> Quantity | None:
+        """T_3 of the transmission.
+        [rad/m3] Range: >= 0. Default: 0 rad/m3.
+        Only with piezo.force_per_volt.
+        """
+    @property
+    def series_stiffness(self) -> Quantity | None:
+        """k_s between the tip and the transmission.
+        [N/m] Range: > 0. Default: none: rigid.
+        Only with piezo.force_per_volt.
         """
 
 class TransmissionSection(Section):
@@ -408,6 +510,19 @@ class SpringSection(Section):
         Only with vehicle.mass.
         """
 
+class WingTorsionSection(Section):
+    @property
+    def stiffness(self) -> Quantity | None:
+        """k_tau, torsion of one wing along its span: twist of the tip against the root, linear between; given, it is a degree of freedom, beside the pitch hinge or in its place.
+        [N m/rad] Range: > 0. Default: none: no twist.
+        """
+    @property
+    def damping(self) -> Quantity | None:
+        """c_tau of one wing.
+        [N m s/rad] Range: >= 0. Default: 0 N m s/rad.
+        Only with wing.torsion.stiffness.
+        """
+
 class WingPlanformSection(Section):
     @property
     def shape(self) -> str | None:
@@ -524,16 +639,17 @@ class WingSection(Section):
         """
     @property
     def pitch_inertia(self) -> Quantity | None:
-        """I_psi = integral x^2 dm of one wing about its leading edge; given with mass_product, or both follow from areal_density.
+        """I_psi = integral x^2 dm of one wing about its leading edge, where it pitches or twists; given with mass_product, or both follow from areal_density.
         [kg m2] Range: > 0. Default: from areal_density.
-        Only with pitch.stiffness.
         """
     @property
     def mass_product(self) -> Quantity | None:
         """P = integral r x dm of one wing, r from the flapping hinge, x behind the leading edge.
         [kg m2] Range: any. Default: from areal_density.
-        Only with pitch.stiffness.
         """
+    @property
+    def torsion(self) -> WingTorsionSection:
+        """The section [wing.torsion]."""
     @property
     def planform(self) -> WingPlanformSection:
         """The section [wing.planform]."""
@@ -554,6 +670,12 @@ class PitchSection(Section):
     def stop(self) -> Quantity | None:
         """psi_max, pitch angle to either side at which stops hold the wing.
         [rad] Range: > 0, < pi. Default: none.
+        Only with pitch.stiffness.
+        """
+    @property
+    def friction(self) -> Quantity | None:
+        """T_psi, constant friction of one hinge's joint.
+        [N m] Range: >= 0. Default: 0 N m.
         Only with pitch.stiffness.
         """
     @property
@@ -584,7 +706,7 @@ class AerodynamicsSection(Section):
     @property
     def pitch_coefficient(self) -> Quantity | None:
         """C_alpha, passive pitching: alpha = pi/2 - C_alpha abs(beta').
-        [s] Range: >= 0. Default: required unless pitch.stiffness.
+        [s] Range: >= 0. Default: required unless pitch.stiffness or wing.torsion.stiffness.
         """
     @property
     def angle_of_attack_min(self) -> Quantity | None:
@@ -634,6 +756,12 @@ class Sections:
     @property
     def motor(self) -> MotorSection:
         """The section [motor]."""
+    @property
+    def electronics(self) -> ElectronicsSection:
+        """The section [electronics]."""
+    @property
+    def piezo(self) -> PiezoSection:
+        """The section [piezo]."""
     @property
     def transmission(self) -> TransmissionSection:
         """The section [transmission]."""

@@ -40,7 +40,7 @@ class SimulationState(NamedTuple):
     @property
     def time(self) -> float:
         """Since the start [s]."""
-        return self.numbers[6]
+        return self.numbers[10]
 
 
 @operation

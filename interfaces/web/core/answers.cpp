@@ -78,6 +78,7 @@ const Description<EnergyAudit>& balance_description() {
     power("copper", "heat of the winding", &R::copper);
     power("viscous", "viscous loss of the motor", &R::viscous);
     power("motor_friction", "loss by the motor's own friction", &R::motor_friction);
+    power("electronics", "loss of the electronics, of a piezo with its dielectric's", &R::electronics);
     power("gear", "loss of the gearbox", &R::gear);
     power("friction", "loss by friction of the mechanism", &R::friction);
     power("hinge", "loss in the hinges of the wings", &R::hinge);

@@ -76,6 +76,8 @@ export type Report = {
   power_motor_friction_w: number | null;
   /** mean loss of the gearbox under load [W] */
   power_gear_w: number | null;
+  /** mean loss of the electronics, of a piezo with its dielectric's [W] */
+  power_electronics_w: number | null;
   /** mean total loss [W] */
   power_loss_w: number | null;
   /** mean power the transmission formulation fails to conserve [W] */
@@ -179,6 +181,8 @@ export type Balance = {
   viscous: number;
   /** loss by the motor's own friction [W] */
   motor_friction: number;
+  /** loss of the electronics, of a piezo with its dielectric's [W] */
+  electronics: number;
   /** loss of the gearbox [W] */
   gear: number;
   /** loss by friction of the mechanism [W] */

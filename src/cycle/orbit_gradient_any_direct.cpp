@@ -1,0 +1,15 @@
+// Gradients of direct drives of any kind.
+#include "cycle/repeat_recorded_body.hpp"
+
+namespace wingbeat {
+
+template bool CycleGradient<AnyDirectSystem<double>>::run();
+
+}  // namespace wingbeat
+
+namespace wingbeat::detail {
+
+template OrbitGradient repeat_recorded(const SteadyFlapping&, const RecordedCycle<AnyDirectSystem<double>>&,
+                                       const Vehicle<GradientJet>&, const GradientVehicle&, const GradientOptions&);
+
+}  // namespace wingbeat::detail
