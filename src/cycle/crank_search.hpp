@@ -22,19 +22,13 @@ class CrankSearch {
   bool stalls(SteadyFlapping& result) const { return detail::stalls(statics_, result); }
 
   System system() {
-    State typical = System::state_of({0.0, no_load_, vehicle_.voltage / circuit_resistance(vehicle_)});
+    Coordinates<double> typical{0.0, no_load_, vehicle_.voltage / circuit_resistance(vehicle_)};
     if constexpr (System::on_hinges) {
       balanced_ = balanced_speed(vehicle_);
-      if constexpr (System::general) typical.fill(1.0), typical[System::shaft] = no_load_;
-      if (has_current_state(vehicle_)) typical[System::current_state] = vehicle_.voltage / circuit_resistance(vehicle_);
-      if (!pitches(vehicle_)) return {vehicle_, typical, 1e-4 * no_load_};
       const double speed = balanced_.slowest;
-      const double psi = typical_pitch(vehicle_, typical_stroke_slope(vehicle_.transmission) * speed, speed);
-      typical[System::pitch] = psi;
-      typical[System::pitch + 1] = speed * psi;
-      if constexpr (System::general) typical[System::twist] = psi, typical[System::twist + 1] = speed * psi;
+      add_typical_wings(vehicle_, typical_stroke_slope(vehicle_.transmission) * speed, speed, typical);
     }
-    return {vehicle_, typical, 1e-4 * no_load_};
+    return {vehicle_, detail::sizes_of_states<System>(vehicle_, typical), 1e-4 * no_load_};
   }
 
   void search(StableOrbits<System>& orbits) {

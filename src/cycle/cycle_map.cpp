@@ -23,14 +23,6 @@ namespace {
 const CycleSignal crank_speed{"crank_speed", "rad/s", 0.0};
 const CycleSignal stroke_angle{"stroke_angle", "rad", 0.0};
 const CycleSignal flapping_velocity{"flapping_velocity", "rad/s", 0.0};
-const CycleSignal armature_current{"current", "A", 0.0};
-const CycleSignal pitch_angle{"pitch_angle", "rad", 0.0};
-const CycleSignal pitch_velocity{"pitch_velocity", "rad/s", 0.0};
-
-const CycleSignal twist_angle{"twist_angle", "rad", 0.0};
-const CycleSignal twist_velocity{"twist_velocity", "rad/s", 0.0};
-const CycleSignal tip{"tip", "m", 0.0};
-const CycleSignal tip_velocity{"tip_velocity", "m/s", 0.0};
 
 /// States of the vehicle, and where they are in the system's.
 struct MapStates {
@@ -48,10 +40,12 @@ MapStates states_of(const Vehicle<double>& v) {
   MapStates states;
   if (!System::turns) states.add(stroke_angle, 0);
   states.add(System::turns ? crank_speed : flapping_velocity, System::shaft);
-  if (indices.inductive) states.add(armature_current, System::current_state);
-  if (indices.compliant) states.add(tip, System::tip), states.add(tip_velocity, System::tip + 1);
-  if (indices.pitching) states.add(pitch_angle, System::pitch), states.add(pitch_velocity, System::pitch + 1);
-  if (indices.twisting) states.add(twist_angle, System::twist), states.add(twist_velocity, System::twist + 1);
+  for (std::size_t k = 0; k < state_group_count; ++k) {
+    if (!indices.has[k]) continue;
+    for_states_of<double>(
+        StateGroup(k), System::place(StateGroup(k)),
+        [&](std::size_t place, const GroupState<double>& state) { states.add({state.name, state.unit, 0.0}, place); });
+  }
   return states;
 }
 

@@ -87,4 +87,11 @@ double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity, dou
   return std::min({std::max(moment / rigidity, least), is_clamped(p.hinge) ? 1.0 : p.hinge.stop, 1.0}) + 1e-12;
 }
 
+void add_typical_wings(const Vehicle<double>& vehicle, double stroke_velocity, double angular_frequency,
+                       Coordinates<double>& typical) {
+  if (!pitches(vehicle)) return;
+  typical.pitch_angle = typical.twist_angle = typical_pitch(vehicle, stroke_velocity, angular_frequency);
+  typical.pitch_velocity = typical.twist_velocity = angular_frequency * typical.pitch_angle;
+}
+
 }  // namespace wingbeat

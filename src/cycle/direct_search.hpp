@@ -30,20 +30,14 @@ class DirectSearch {
     const double speed = balance_.responses.empty() ? slip_speed : std::abs(balance_.responses.back().speed);
     Coordinates<double> typical{speed / w_, speed, typical_current(vehicle_, balance_)};
     if constexpr (System::on_hinges) {
-      if (pitches(vehicle_)) typical.pitch_angle = typical_pitch(vehicle_, speed);
-      typical.pitch_velocity = w_ * typical.pitch_angle;
+      add_typical_wings(vehicle_, speed, w_, typical);
       typical.angle += 1e-12, typical.speed += 1e-9, typical.current += 1e-12;
     }
     if constexpr (System::general) {
-      typical.twist_angle = typical.pitch_angle, typical.twist_velocity = typical.pitch_velocity;
       typical.tip = typical.angle / vehicle_.piezo.transmission_ratio;
       typical.tip_velocity = w_ * typical.tip;
-      State sizes = System::state_of(typical, vehicle_);
-      for (double& size : sizes) size = size > 0.0 ? size : 1.0;
-      return {vehicle_, sizes};
-    } else {
-      return {vehicle_, System::state_of(typical)};
     }
+    return {vehicle_, detail::sizes_of_states<System>(vehicle_, typical)};
   }
 
   void search(StableOrbits<System>& orbits) const {

@@ -13,6 +13,18 @@
 
 namespace wingbeat::detail {
 
+/// Typical sizes of a system's states; 1 of what the vehicle does not have.
+template <class System>
+typename System::State sizes_of_states(const Vehicle<double>& vehicle, const Coordinates<double>& typical) {
+  if constexpr (System::general) {
+    typename System::State sizes = System::state_of(typical, vehicle);
+    for (double& size : sizes) size = size > 0.0 ? size : 1.0;
+    return sizes;
+  } else {
+    return System::state_of(typical);
+  }
+}
+
 /// The stable orbits of a vehicle that searches have found so far, and what they have found beside.
 template <class System>
 class StableOrbits {

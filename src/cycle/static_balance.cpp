@@ -65,6 +65,20 @@ LeverReach lever_reach(const FourBar<double>& f) {
 
 LeverReach lever_reach(const StrokeTable<double>& t) { return {t.reference_radius, infinity, t.reference_radius}; }
 
+/// Of any other transmission, which conserves power, from bounds over parts of a turn.
+template <class Other>
+LeverReach lever_reach(const Other& t) {
+  double least = infinity, largest = 0.0;
+  for (int n = 0; n < angle_count; ++n) {
+    const double width = two_pi / angle_count;
+    const detail::KinematicBounds k = detail::kinematic_bounds(t, n * width, (n + 1) * width);
+    const Interval h = (k.wing_jacobian * k.lever_ratio).value;
+    least = std::min(least, k.wing_jacobian.value.low);
+    largest = std::max({largest, -h.low, h.high});
+  }
+  return {least, largest, least};
+}
+
 LeverReach lever_reach(const AnyTransmission<double>& t) {
   return visit(t, [](const auto& of_type) { return lever_reach(of_type); });
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "wingbeat/core/enclosure.hpp"
+#include "wingbeat/core/members.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat::detail {
@@ -17,6 +18,13 @@ struct KinematicBounds {
 KinematicBounds kinematic_bounds(const SliderCrank<double>& c, double from, double to);
 KinematicBounds kinematic_bounds(const FourBar<double>& f, double from, double to);
 KinematicBounds kinematic_bounds(const StrokeTable<double>& t, double from, double to);
+/// Of any other transmission, which conserves power, by interval arithmetic.
+template <class Other>
+KinematicBounds kinematic_bounds(const Other& t, double from, double to) {
+  const CircleArc arc = circle_arc(from, to);
+  const CrankKinematics<Enclosure> k = crank_kinematics(cast<Enclosure>(t), arc.sine, arc.cosine);
+  return {wingbeat::stroke_angle(k), k.stroke_slope, k.wing_jacobian, k.stroke_slope};
+}
 
 /// Of one vehicle with wings, over crank angles from `from` to `to` [rad], at most a turn apart.
 class StaticBounds {

@@ -31,21 +31,7 @@ void EquationsOfMotion::rates(double time, const double* state, double* derivati
   if (!inductive_) mode = with_bridge(vehicle, *voltage, c.speed, mode);
   const FullState<double> instant = instant_at(vehicle, c, {*voltage}, mode);
   mode_at(vehicle, instant, mode, &m);
-  derivatives[0] = state[1];
-  derivatives[1] = m.crank_acceleration;
-  if (inductive_) derivatives[indices.current] = m.inductive_voltage / vehicle.motor.armature_inductance;
-  if (indices.compliant) {
-    derivatives[indices.tip] = state[indices.tip + 1];
-    derivatives[indices.tip + 1] = instant.tip_acceleration;
-  }
-  if (indices.pitching) {
-    derivatives[indices.pitch] = state[indices.pitch + 1];
-    derivatives[indices.pitch + 1] = m.pitch_acceleration;
-  }
-  if (indices.twisting) {
-    derivatives[indices.twist] = state[indices.twist + 1];
-    derivatives[indices.twist + 1] = m.twist_acceleration;
-  }
+  indices.unknowns(rates_of(vehicle, c, instant, m), derivatives);
 }
 
 }  // namespace wingbeat

@@ -32,13 +32,7 @@ Dynamics<S> evaluate(const Vehicle<S>& v, const Mode<S>& standing, const S* y, c
   all.load_torque = v.load_torque;
   all.stroke_angle = stroke_angle_at(v, instant.configuration.kinematics, all.moving.angle);
   all.rates.fill(S(0.0));
-  all.rates[0] = instant.omega;
-  all.rates[1] = all.motion.crank_acceleration;
-  if (indices.inductive) all.rates[indices.current] = all.motion.inductive_voltage / v.motor.armature_inductance;
-  if (indices.pitching) {
-    all.rates[indices.pitch] = instant.pitch_velocity;
-    all.rates[indices.pitch + 1] = all.motion.pitch_acceleration;
-  }
+  indices.unknowns(rates_of(v, all.moving, instant, all.motion), all.rates.data());
   all.integrands = integrands<S>(all.motion, instant.omega, mode);
   return all;
 }

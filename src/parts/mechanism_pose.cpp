@@ -39,7 +39,9 @@ MechanismPose pose_of(const FourBar<double>& f, double crank_angle, double strok
            {LinkRole::crank, "axis", "pin"}}};
 }
 
-MechanismPose pose_of(const StrokeTable<double>&, double crank_angle, double stroke_angle, double wing_length) {
+/// A scheme, of a stroke that a table gives and of transmissions whose joints nothing says.
+template <class Other>
+MechanismPose pose_of(const Other&, double crank_angle, double stroke_angle, double wing_length) {
   const PlanePoint axis{}, hinge{0.83 * wing_length, 0.0};
   return {{{"axis", axis, true},
            {"pin", on_circle(axis, 0.3 * wing_length, crank_angle)},
@@ -68,12 +70,8 @@ MechanismPose pose_of(const AnyTransmission<double>& t, double crank_angle, doub
 }
 
 double drawn_wing_length(const AnyTransmission<double>& t) {
-  switch (t.type) {
-    case TransmissionType::slider_crank: return 1.2 * t.slider_crank.rod_length;
-    case TransmissionType::four_bar: return 0.9 * (t.four_bar.ground_length + t.four_bar.rocker_length);
-    case TransmissionType::tabulated:
-    case TransmissionType::direct: break;
-  }
+  if (t.type == TransmissionType::slider_crank) return 1.2 * t.slider_crank.rod_length;
+  if (t.type == TransmissionType::four_bar) return 0.9 * (t.four_bar.ground_length + t.four_bar.rocker_length);
   return 1.0;
 }
 

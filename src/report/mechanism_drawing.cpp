@@ -218,12 +218,8 @@ MechanismSketch mechanism_sketch(const AnyTransmission<double>& t, bool springs,
 }
 
 const char* internal_force_name(TransmissionType type) {
-  switch (type) {
-    case TransmissionType::four_bar: return "coupler force";
-    case TransmissionType::tabulated: return "reaction";
-    case TransmissionType::slider_crank:
-    case TransmissionType::direct: break;
-  }
+  if (type == TransmissionType::four_bar) return "coupler force";
+  if (type == TransmissionType::tabulated) return "reaction";
   return "rod force";
 }
 
@@ -243,9 +239,9 @@ std::string mechanism_caption(const Vehicle<double>& vehicle) {
     case TransmissionType::tabulated:
       return fmt::format("tabulated: stroke over crank angle (deg); reaction at {:.4g} mm",
                          mm * t.tabulated.reference_radius);
-    case TransmissionType::direct: break;
+    case TransmissionType::direct: return "direct drive: the motor's shaft is the wing hinge";
+    default: return name_of(t.type);
   }
-  return "direct drive: the motor's shaft is the wing hinge";
 }
 
 void draw_mechanism_panel(Figure& figure, const Vehicle<double>& vehicle, const StrokeRange& stroke,

@@ -54,7 +54,7 @@ class Table {
   std::back_insert_iterator<std::string> out_{text_};
 };
 
-void power_group(Table& table, const Metrics<double>& m) {
+void power_group(Table& table, const Metrics<double>& m, bool piezo) {
   const EnergyAudit a = energy_audit(m);
   const auto share = [&](double power) {
     const double percent = 100.0 * power / a.electrical;
@@ -67,9 +67,11 @@ void power_group(Table& table, const Metrics<double>& m) {
   };
   const bool electronics = std::isfinite(m[Metric::power_electronics]);
   power("electrical input", a.electrical, electronics ? "of the electronics" : "v i");
-  if (electronics) power("  electronics", a.electronics, "(1/eta - 1) v i; of a piezo with its dielectric");
-  power("  copper loss", a.copper, "R_a i^2");
-  power("  viscous loss of the motor", a.viscous, "b omega^2");
+  if (electronics) {
+    power("  electronics", a.electronics, piezo ? "dielectric, energy not recovered" : "(1/eta - 1) v i");
+  }
+  if (!piezo) power("  copper loss", a.copper, "R_a i^2");
+  power(piezo ? "  damping of the piezo" : "  viscous loss of the motor", a.viscous, piezo ? "c_a x'^2" : "b omega^2");
   if (a.motor_friction != 0.0) power("  friction of the motor", a.motor_friction, "T_c,m omega");
   if (a.gear != 0.0) power("  gearbox", a.gear, "(1 - e) T_g omega");
   power(a.motor_friction != 0.0 ? "  friction of the mechanism" : "  friction", a.friction, "T_f omega");
@@ -82,7 +84,7 @@ void power_group(Table& table, const Metrics<double>& m) {
   table.line("  energy-balance error", readable(a.imbalance, "W"),
              std::isfinite(error) ? fmt::format("{:>9.0e}   input minus the above", error)
                                   : fmt::format("{:>9}   input minus the above", "-"));
-  power("motor output", m[Metric::power_motor], "T_m omega");
+  power(piezo ? "piezo output" : "motor output", m[Metric::power_motor], piezo ? "F_t x_t'" : "T_m omega");
   if (std::isfinite(m[Metric::power_motor_reference])) {
     power("  as a test bench estimates it", m[Metric::power_motor_reference], "2 pi f K_ref i");
   }
@@ -248,13 +250,15 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   table.metric("mean current", Metric::current_mean, "A");
   table.metric("peak current", Metric::current_peak, "A");
   table.metric("rms current", Metric::current_rms, "A");
-  power_group(table, m);
+  const bool piezo = result.design.piezo.force_per_volt.has_value();
+  power_group(table, m, piezo);
   heat_group(table, m);
 
   table.group("Efficiency");
   table.percent("system", Metric::efficiency_system, "aerodynamic / electrical");
-  table.percent("motor", Metric::efficiency_motor, "motor output / electrical");
-  table.percent("mechanism", Metric::efficiency_mechanism, "aerodynamic / motor output");
+  const std::string actuator = piezo ? "piezo" : "motor";
+  table.percent(actuator, Metric::efficiency_motor, actuator + " output / electrical");
+  table.percent("mechanism", Metric::efficiency_mechanism, "aerodynamic / " + actuator + " output");
 
   table.group("Lift, all wings");
   table.metric("mean lift", Metric::lift_mean, "N");

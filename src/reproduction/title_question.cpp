@@ -12,23 +12,12 @@
 namespace wingbeat::reproduction {
 namespace {
 
-const char* coefficient_unit(FrictionLaw law) {
-  switch (law) {
-    case FrictionLaw::viscous: return "N m s/rad";
-    case FrictionLaw::quadratic: return "N m s2/rad2";
-    case FrictionLaw::constant: return "N m";
-    case FrictionLaw::load_proportional: return "m";
-    case FrictionLaw::none: break;
-  }
-  return "";
-}
-
 std::string coefficient(const LawPrediction& p) {
   const CalibratedLaw& law = p.law;
   if (rivals[p.rival].own_drag) return fmt::format("drag × {:.3f}", p.drag_factor);
   if (law.law == FrictionLaw::none) return "none";
   if (law.law == FrictionLaw::load_proportional) return readable(law.coefficient, "m");
-  return fmt::format("{:.4g} {}", law.coefficient, coefficient_unit(law.law));
+  return fmt::format("{:.4g} {}", law.coefficient, key_of(law.law)->unit);
 }
 
 bool is_outside(const LawPrediction& p, const PublishedValue& v, const std::string& design) {

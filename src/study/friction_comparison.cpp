@@ -48,8 +48,10 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
   double speed = 0.0;
   const double torque = mean_friction_torque(fit, speed);
   std::vector<FrictionCandidate> candidates;
-  for (const FrictionLaw law : {FrictionLaw::none, FrictionLaw::viscous, FrictionLaw::quadratic, FrictionLaw::constant,
-                                FrictionLaw::load_proportional}) {
+  std::vector<FrictionLaw> laws;
+  for (const auto& [name, law] : names_of<FrictionLaw>) laws.push_back(law);
+  std::stable_partition(laws.begin(), laws.end(), [](FrictionLaw l) { return l != FrictionLaw::load_proportional; });
+  for (const FrictionLaw law : laws) {
     if (progress) progress(std::string("friction law ") + name_of(law));
     BenchFit trial = fit;
     trial.profiles = false;
@@ -60,20 +62,14 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
       trial.design.friction.coefficient = own->start;
       trial.parameters.push_back(*own);
     } else if (law != FrictionLaw::none) {
-      const char* key = law == FrictionLaw::viscous     ? "friction.damping"
-                        : law == FrictionLaw::quadratic ? "friction.coefficient"
-                        : law == FrictionLaw::constant  ? "friction.torque"
-                                                        : "friction.radius";
       // The coefficient that gives the same mean torque where the logs lie.
-      const double start = law == FrictionLaw::viscous             ? torque / speed
-                           : law == FrictionLaw::quadratic         ? torque / (speed * speed)
-                           : law == FrictionLaw::load_proportional ? 0.3 * fit.design.transmission.crank_radius
-                                                                   : torque;
+      const bool by_load = law == FrictionLaw::load_proportional;
+      const double lever = fit.design.transmission.crank_radius;
+      const double start = by_load ? 0.3 * lever : coefficient_for(law, torque, speed, 0.0);
       if (!(start > 0.0)) continue;
       trial.design.friction.coefficient = start;
-      const double upper =
-          law == FrictionLaw::load_proportional ? 2.0 * fit.design.transmission.crank_radius : 20.0 * start;
-      trial.parameters.push_back({parameter_of(key), 0.0, upper, start});
+      const double upper = by_load ? 2.0 * lever : 20.0 * start;
+      trial.parameters.push_back({parameter_of(key_of(law)->path), 0.0, upper, start});
     }
     FrictionCandidate candidate;
     candidate.law = law;

@@ -211,10 +211,8 @@ CalibratedLaw calibrate_friction(Design<double> design, FrictionLaw law, double 
   // Friction that dissipates at the rate of a tenth of a milliwatt, then more of it until the vehicle is too slow.
   const double omega = two_pi * frequency;
   const double torque = 1e-4 / omega;
-  double low = 0.0, high = law == FrictionLaw::viscous     ? torque / omega
-                           : law == FrictionLaw::quadratic ? torque / (omega * omega)
-                           : law == FrictionLaw::constant  ? torque
-                                                           : torque / 0.1;  // a rod force of 0.1 N
+  constexpr double rod_force = 0.1;  // [N]
+  double low = 0.0, high = coefficient_for(law, torque, omega, rod_force);
   for (int n = 0; n < 40 && flapping_at(high) > frequency; ++n) {
     low = high;
     high *= 2.0;

@@ -6,7 +6,7 @@
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/study/endurance.hpp"
-#include "wingbeat/vehicle/dynamics.hpp"
+#include "wingbeat/vehicle/drive.hpp"
 
 namespace wingbeat {
 namespace {
@@ -14,65 +14,6 @@ namespace {
 constexpr double transient_tightest = 1e-11;
 
 using detail::format;
-
-/// Everything that acts at a state where the supply drives v, in the mode that the state itself decides.
-Motion<double> motion_of(const Vehicle<double>& vehicle, double crank_angle, double omega, double i, double v) {
-  Mode<double> mode;
-  mode.direction = sign_of(omega);
-  PitchMotion<double> m;
-  mode_at(vehicle, instant_at(vehicle, {crank_angle, omega, i}, {v}, mode), mode, &m);
-  return m;
-}
-
-/// The last whole cycle of a simulation, sampled evenly in time. The simulation is repeated with samples about as dense
-/// as the rows asked for; between samples the state follows cubics.
-void last_cycle(const Vehicle<double>& vehicle, const Supply<double>& supply, TransientOptions options, int rows,
-                RunResult& result) {
-  options.record = true;
-  options.record_interval = 1.0 / (result.metrics[Metric::frequency] * std::max(rows - 1, 360));
-  const TransientResult run = simulate_start_up(vehicle, options);
-
-  double start = absent, end = absent;
-  for (const TransientEvent& event : run.events) {
-    if (event.kind != TransientEvent::Kind::revolution) continue;
-    start = end;
-    end = event.time;
-  }
-  const auto& samples = run.samples;
-  if (!(end > start) || samples.size() < 4) return;
-  const double start_angle =
-      two_pi * std::round(std::prev(std::upper_bound(samples.begin(), samples.end(), start,
-                                                     [](double t, const TransientSample& s) { return t < s.time; }))
-                              ->crank_angle /
-                          two_pi);
-
-  auto after = samples.begin() + 1;
-  for (int k = 0; k < rows; ++k) {
-    const double time = start + (end - start) * k / (rows - 1);
-    while (after + 1 != samples.end() && after->time < time) ++after;
-    const TransientSample& a = *(after - 1);
-    const TransientSample& b = *after;
-    const double h = b.time - a.time;
-    const double x = (time - a.time) / h;
-    const auto hermite = [&](double ya, double yb, double da, double db) {
-      return ya + x * (h * da + x * (3.0 * (yb - ya) - h * (2.0 * da + db) + x * (2.0 * (ya - yb) + h * (da + db))));
-    };
-    const Motion<double> ma = motion_of(vehicle, a.crank_angle, a.crank_speed, a.current, voltage_at(supply, a.time));
-    const Motion<double> mb = motion_of(vehicle, b.crank_angle, b.crank_speed, b.current, voltage_at(supply, b.time));
-    const double theta = hermite(a.crank_angle, b.crank_angle, a.crank_speed, b.crank_speed);
-    const double omega = hermite(a.crank_speed, b.crank_speed, ma.crank_acceleration, mb.crank_acceleration);
-    const double v = voltage_at(supply, time);
-    const double L_a = vehicle.motor.armature_inductance;
-    // A switching supply kinks the current between samples: there a straight line is the safer guess.
-    const double current = !has_current_state(vehicle) ? algebraic_current(vehicle, v, omega)
-                           : supply.type == SupplyType::pwm
-                               ? a.current + x * (b.current - a.current)
-                               : hermite(a.current, b.current, ma.inductive_voltage / L_a, mb.inductive_voltage / L_a);
-    const Motion<double> m = motion_of(vehicle, theta, omega, current, v);
-    result.cycle.push_back(
-        waveform_row(vehicle, m, time - start, theta - start_angle, omega, stroke_angle(m.kinematics)));
-  }
-}
 
 /// Refuses a supply whose voltage cannot be chosen: `wanted` depends on it.
 void require_choice_of_voltage(const Supply<double>& supply, const char* wanted, bool lift) {
@@ -137,11 +78,7 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
     TransientOptions transient;
     transient.tolerance = std::max(options.tolerance, transient_tightest);
     transient.cycle_rows = options.waveform_rows;
-    if (!drive_of(vehicle).rotates || pitches(vehicle) || is_of_further_kind(vehicle)) {
-      result.cycle = simulate_start_up(warm, transient).cycle;
-    } else {
-      last_cycle(warm, {SupplyType::constant, vehicle.voltage, 0.0, 1.0, {}}, transient, options.waveform_rows, result);
-    }
+    result.cycle = simulate_start_up(warm, transient).cycle;
   }
 }
 
@@ -171,10 +108,8 @@ void run_transient(Vehicle<double> vehicle, const RunOptions& options, RunResult
   TransientOptions transient;
   transient.tolerance = std::max(options.tolerance, transient_tightest);
   transient.reporting = reporting_of(result.design);
-  const Drive drive = drive_of(vehicle);
-  if (!drive.alternating) transient.supply = result.design.supply;
-  const bool keeps_cycle = !drive.rotates || pitches(vehicle) || is_of_further_kind(vehicle);
-  transient.cycle_rows = keeps_cycle && options.waveform_rows > 1 ? options.waveform_rows : 0;
+  if (!drive_of(vehicle).alternating) transient.supply = result.design.supply;
+  transient.cycle_rows = options.waveform_rows > 1 ? options.waveform_rows : 0;
   result.start_up =
       heats_up(vehicle.thermal) ? simulate_warm(vehicle, transient) : simulate_start_up(vehicle, transient);
   const TransientResult& found = *result.start_up;
@@ -183,11 +118,7 @@ void run_transient(Vehicle<double> vehicle, const RunOptions& options, RunResult
   result.settled = found.settled;
   if (found.metrics && found.status == FlappingStatus::flapping) {
     result.metrics = *found.metrics;
-    if (keeps_cycle) {
-      result.cycle = found.cycle;
-    } else if (options.waveform_rows > 1) {
-      last_cycle(vehicle, result.design.supply, transient, options.waveform_rows, result);
-    }
+    result.cycle = found.cycle;
   }
 }
 

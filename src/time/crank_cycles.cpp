@@ -175,18 +175,16 @@ bool CrankStartUp::repeats_after(std::size_t cycles) const {
 
 CrankStartUp::Scaled CrankStartUp::scaled(const Coordinates<double>& c) const {
   Scaled x{c.speed / model_.speed_scale, c.current / model_.current_scale};
-  if (model_.indices.pitching) {
-    x[2] = c.pitch_angle / model_.pitch_scale, x[3] = c.pitch_velocity / model_.pitch_velocity_scale;
-  }
-  if (model_.indices.twisting) {
-    x[4] = c.twist_angle / model_.pitch_scale, x[5] = c.twist_velocity / model_.pitch_velocity_scale;
-  }
+  for_further_states(
+      [&](std::size_t place, const GroupState<double>& state, double size) { x[place] = c.*state.number / size; });
   return x;
 }
 
 /// Largest relative change of the state since a crossing.
 double CrankStartUp::state_change(const Crossing& before) const {
-  constexpr Scaled beside{1e-6, 0.01, 0.1, 0.1, 0.1, 0.1};
+  Scaled beside;
+  beside.fill(0.1);
+  beside[0] = 1e-6, beside[1] = 0.01;
   const Scaled x = scaled(now_.moving), then = scaled(before.state);
   double change = 0.0;
   for (std::size_t k = 0; k < x.size(); ++k) {
@@ -205,13 +203,14 @@ void CrankStartUp::move_state(const Scaled& by) {
   } else if (!now_.blocked && !now_.limited) {
     c.current += by[1] * model_.current_scale;
   }
+  for_further_states([&](std::size_t place, const GroupState<double>& state, double size) {
+    const bool pitch =
+        state.number == &Coordinates<double>::pitch_angle || state.number == &Coordinates<double>::pitch_velocity;
+    if (!pitch || !now_.held) c.*state.number += by[place] * size;
+  });
   if (model_.indices.pitching && !now_.held) {
     const double stop = model_.vehicle.pitch.hinge.stop;
-    c.pitch_angle = std::clamp(c.pitch_angle + by[2] * model_.pitch_scale, -stop, stop);
-    c.pitch_velocity += by[3] * model_.pitch_velocity_scale;
-  }
-  if (model_.indices.twisting) {
-    c.twist_angle += by[4] * model_.pitch_scale, c.twist_velocity += by[5] * model_.pitch_velocity_scale;
+    c.pitch_angle = std::clamp(c.pitch_angle, -stop, stop);
   }
   crossings_.back().state = c;
 }
@@ -337,6 +336,7 @@ void CrankStartUp::measure_next() {
 
 void CrankStartUp::take_cycles(int cycles) {
   const std::size_t n = crossings_.size();
+  end_rows(measured_from_, measured_angle_);
   if (model_.indices.pitching) {
     // Of a crank that stands for a while, what rounding leaves of the speed is none.
     double& slowest = extremes_[std::size_t(Extreme::crank_speed_min)];

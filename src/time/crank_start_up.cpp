@@ -142,8 +142,7 @@ void CrankStartUp::step_taken(Integrator& steps, double from) {
   // A heavy rotor takes long steps, however the stroke bends within a few degrees of the crank.
   constexpr double fine = 0.02;  // [rad]
   track_extremes(steps, from, int(std::ceil(std::abs(now_.moving.angle - steps.dense(from)[0]) / fine)));
-  if (pitches(model_.vehicle) || is_of_further_kind(model_.vehicle))
-    take_rows(steps, measured_from_, crossings_.back().cycle, measured_angle_, 1e-6);
+  if (!crossings_.empty()) take_rows(steps, measured_from_, crossings_.back().cycle, measured_angle_, 1e-6);
 }
 
 void CrankStartUp::track_inrush(Integrator& steps, double from) {

@@ -72,8 +72,17 @@ class CrankStartUp : public StartUpRun {
     double cycle;    // duration of the cycle that ended here [s]
     double skipped;  // time of the cycles that a jump left out after it [s]
   };
-  /// What a crossing is compared by: speed, current, pitch and twist, over their typical sizes.
-  using Scaled = std::array<double, 6>;
+  /// What a crossing is compared by: speed, current and whatever else moves, over their typical sizes.
+  using Scaled = std::array<double, max_unknowns>;
+  /// Calls use(place in Scaled, state, its typical size) for each of what else moves.
+  template <class Use>
+  void for_further_states(const Use& use) const {
+    const auto sizes = model_.typical();
+    std::size_t place = 2;
+    model_.indices.for_each<double>([&](std::size_t n, const GroupState<double>& state) {
+      if (state.number != &Coordinates<double>::current) use(place++, state, sizes[n]);
+    });
+  }
   Scaled scaled(const Coordinates<double>& c) const;
   double state_change(const Crossing& before) const;
   void move_state(const Scaled& by);

@@ -11,6 +11,7 @@
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/solve/implicit_step.hpp"
 #include "wingbeat/solve/iterate_record.hpp"
+#include "wingbeat/vehicle/unknowns.hpp"
 
 namespace wingbeat::detail {
 namespace {
@@ -282,16 +283,25 @@ class OwnIntegrator : public Integrator {
 
 }  // namespace
 
+namespace {
+
+/// Of 2 unknowns, 3, and so on.
+template <std::size_t... extra>
+std::unique_ptr<Integrator> integrator_of(IntegratorProblem problem, std::index_sequence<extra...>) {
+  std::unique_ptr<Integrator> made;
+  const auto make = [&]<std::size_t N>() {
+    if (std::size_t(problem.coupled) != N) return false;
+    made = std::make_unique<OwnIntegrator<int(N), quadrature_count>>(std::move(problem));
+    return true;
+  };
+  (void)(make.template operator()<2 + extra>() || ...);
+  return made;
+}
+
+}  // namespace
+
 std::unique_ptr<Integrator> own_integrator(IntegratorProblem problem) {
-  switch (problem.coupled) {
-    case 2: return std::make_unique<OwnIntegrator<2, quadrature_count>>(std::move(problem));
-    case 3: return std::make_unique<OwnIntegrator<3, quadrature_count>>(std::move(problem));
-    case 4: return std::make_unique<OwnIntegrator<4, quadrature_count>>(std::move(problem));
-    case 5: return std::make_unique<OwnIntegrator<5, quadrature_count>>(std::move(problem));
-    case 6: return std::make_unique<OwnIntegrator<6, quadrature_count>>(std::move(problem));
-    case 7: return std::make_unique<OwnIntegrator<7, quadrature_count>>(std::move(problem));
-    default: return std::make_unique<OwnIntegrator<8, quadrature_count>>(std::move(problem));
-  }
+  return integrator_of(std::move(problem), std::make_index_sequence<max_unknowns - 1>());
 }
 
 }  // namespace wingbeat::detail

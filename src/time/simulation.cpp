@@ -65,11 +65,8 @@ struct BackUnlessDone {
 std::vector<std::string> time_state_names(const Vehicle<double>& vehicle) {
   std::vector<std::string> names{"crank_angle", "crank_speed"};
   if (drive_of(vehicle).alternating) names = {"stroke_angle", "flapping_velocity"};
-  if (has_current_state(vehicle)) names.emplace_back("current");
-  const UnknownIndices indices(vehicle);
-  if (indices.compliant) names.insert(names.end(), {"tip", "tip_velocity"});
-  if (indices.pitching) names.insert(names.end(), {"pitch_angle", "pitch_velocity"});
-  if (indices.twisting) names.insert(names.end(), {"twist_angle", "twist_velocity"});
+  UnknownIndices(vehicle).for_each<double>(
+      [&](std::size_t, const GroupState<double>& state) { names.emplace_back(state.name); });
   return names;
 }
 

@@ -186,12 +186,28 @@ void StartUpRun::take_rows(Integrator& steps, double start, double period, doubl
     const double since = period * double(result_.cycle.size()) / last, t = start + since;
     if (t > now_.t + slack * period) return;
     const double* y = steps.dense(std::min(t, now_.t));
-    const Motion<double> m = model_.motion(t, y);
-    result_.cycle.push_back(
-        waveform_row(model_.vehicle, m, since, y[0] - angle_0, model_.direct ? m.stroke_velocity : y[1],
-                     stroke_angle_at(model_.vehicle, m.kinematics, y[0]),
-                     pitches(model_.vehicle) ? local_pitch(model_.indices.coordinates(y)) : absent));
+    take_row(since, y, model_.motion(t, y), angle_0);
   }
+}
+
+void StartUpRun::take_row(double since, const double* y, const Motion<double>& m, double angle_0) {
+  result_.cycle.push_back(waveform_row(model_.vehicle, m, since, y[0] - angle_0,
+                                       model_.direct ? m.stroke_velocity : y[1],
+                                       stroke_angle_at(model_.vehicle, m.kinematics, y[0]),
+                                       pitches(model_.vehicle) ? local_pitch(model_.indices.coordinates(y)) : absent));
+}
+
+void StartUpRun::end_rows(double start, double angle_0) {
+  std::vector<WaveformRow>& rows = result_.cycle;
+  if (rows.empty() || int(rows.size()) < options_.cycle_rows - 1) return;
+  const double end = now_.t - start;
+  if (int(rows.size()) == options_.cycle_rows) {
+    if (std::abs(rows.back().time - end) > 1e-3 * end) return;
+    rows.pop_back();
+  }
+  double y[max_unknowns];
+  model_.unknowns(y);
+  take_row(end, y, model_.motion_now(), angle_0);
 }
 
 double StartUpRun::shaken_until() const {

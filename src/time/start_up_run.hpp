@@ -98,6 +98,9 @@ class StartUpRun {
   /// Rows of the cycle that is measured, which began at the time `start` [s] and a shaft angle [rad]. `period` [s] may
   /// be that of the cycle before: `slack` is by what share it may be longer.
   void take_rows(Integrator& steps, double start, double period, double angle_0, double slack);
+  void take_row(double since, const double* y, const Motion<double>& m, double angle_0);
+  /// The last row where the cycle ends now, which the cycle before it foretold to its tolerance.
+  void end_rows(double start, double angle_0);
   void event(Kind kind) { result_.events.push_back({now_.t, now_.moving.angle, kind}); }
   /// The time after which wings that pitch, and the current, no longer shake a shaft that stands from now on [s].
   double shaken_until() const;

@@ -17,7 +17,7 @@ Supply<double> supply_in_time(const Vehicle<double>& vehicle, const Supply<doubl
   if (!drive_of(vehicle).rotates) {
     return {SupplyType::sine, vehicle.voltage, vehicle.drive_frequency, 1.0, {}, vehicle.voltage_offset};
   }
-  // The bridge of a brushless motor switches by itself: what it is told is the mean.
+  // The bridge of a brushless motor switches by itself, about the mean voltage.
   const bool steady_pwm = supply.type == SupplyType::pwm &&
                           (supply.duty <= 0.0 || supply.duty >= 1.0 || limits_current(vehicle.electronics));
   if (steady_pwm || supply.type == SupplyType::battery) {
@@ -213,22 +213,14 @@ bool TimeModel::rates(double t, const double* y, double* dy, bool quadrature) co
   const FullState<double> here = instant(t, y);
   PitchMotion<double> m;
   mode = on_force_branch(vehicle, here, this->mode(), &m);
-  dy[0] = now.stuck ? 0.0 : y[1];
-  dy[1] = m.crank_acceleration;
-  if (indices.inductive) dy[indices.current] = m.inductive_voltage / vehicle.motor.armature_inductance;
-  if (indices.compliant) dy[indices.tip] = y[indices.tip + 1], dy[indices.tip + 1] = here.tip_acceleration;
-  if (indices.pitching) {
-    dy[indices.pitch] = now.held ? 0.0 : y[indices.pitch + 1];
-    dy[indices.pitch + 1] = m.pitch_acceleration;
-  }
-  if (indices.twisting) dy[indices.twist] = y[indices.twist + 1], dy[indices.twist + 1] = m.twist_acceleration;
+  const Coordinates<double> place = indices.coordinates(y);
+  indices.unknowns(rates_of(vehicle, place, here, m), dy);
   if (quadrature) {
     const CycleIntegrals<double> all = integrands<double>(m, dy[0], mode);
     for (int k = 0; k < quadrature_count; ++k) dy[coupled + k] = all[std::size_t(quadratures[k])];
   }
-  bool finite = std::isfinite(dy[1]) && std::isfinite(y[coupled - 1]);
-  if (indices.pitching) finite = finite && std::isfinite(dy[indices.pitch + 1]);
-  if (indices.twisting) finite = finite && std::isfinite(dy[indices.twist + 1]);
+  bool finite = std::isfinite(y[coupled - 1]);
+  for (std::size_t n = 1; n < indices.count; ++n) finite = finite && std::isfinite(dy[n]);
   return finite;
 }
 
@@ -299,13 +291,23 @@ void TimeModel::set(double t, const double* y) {
   if (!indices.inductive) now.moving.current = current_of(t, y);
 }
 
-std::array<double, max_unknowns> TimeModel::typical() const {
+Coordinates<double> TimeModel::typical_coordinates() const {
   const double ratio = is_given(vehicle.piezo) ? vehicle.piezo.transmission_ratio : 1.0;
+  return {.angle = angle_scale,
+          .speed = speed_scale,
+          .current = current_scale,
+          .pitch_angle = pitch_scale,
+          .pitch_velocity = pitch_velocity_scale,
+          .twist_angle = pitch_scale,
+          .twist_velocity = pitch_velocity_scale,
+          .tip = angle_scale / ratio,
+          .tip_velocity = speed_scale / ratio};
+}
+
+std::array<double, max_unknowns> TimeModel::typical() const {
   std::array<double, max_unknowns> sizes;
   sizes.fill(1.0);
-  indices.unknowns({angle_scale, speed_scale, current_scale, pitch_scale, pitch_velocity_scale, pitch_scale,
-                    pitch_velocity_scale, angle_scale / ratio, speed_scale / ratio},
-                   sizes.data());
+  indices.unknowns(typical_coordinates(), sizes.data());
   return sizes;
 }
 

@@ -41,9 +41,8 @@ class TimeModel {
     /// Calls use(number) for each of them.
     template <class Self, class Use>
     static void each(Self& self, const Use& use) {
-      auto& c = self.moving;
-      use(self.t), use(c.angle), use(c.speed), use(c.current), use(c.pitch_angle), use(c.pitch_velocity);
-      use(c.twist_angle), use(c.twist_velocity), use(c.tip), use(c.tip_velocity);
+      use(self.t);
+      Coordinates<double>::each(self.moving, use);
       use(self.direction), use(self.force), use(self.force_known), use(self.switched_voltage), use(self.stuck);
       use(self.leaving), use(self.jammed), use(self.switches), use(self.held), use(self.turn), use(self.blocked);
       use(self.limited), use(self.impact_loss);
@@ -93,6 +92,7 @@ class TimeModel {
   bool branch_lost();
   /// Admissible errors of a step.
   void tolerated(double relative, const double* y, double* errors) const;
+  Coordinates<double> typical_coordinates() const;
   std::array<double, max_unknowns> typical() const;
   double longest_step() const;
   double longest_moving_step() const;  ///< where nothing stands

@@ -15,8 +15,10 @@
 namespace wingbeat {
 namespace {
 
-void validate_slider_crank(const Design<double>& d) {
+/// Of a transmission that either fixes.
+void validate_hinge_offset(const Design<double>& d) {
   const TransmissionDesign<double>& t = d.transmission;
+  if (!takes_key(t.type, slider_crank_key::hinge_offset.path)) return;
   if (t.hinge_offset.has_value() == t.stroke_amplitude.has_value()) {
     throw ParameterError("transmission.hinge_offset", "give exactly one of hinge_offset and stroke_amplitude");
   }
@@ -187,12 +189,8 @@ void validate(const Design<double>& d) {
         "transmission.rod_linear_density",
         std::string("a ") + name_of(type) + (drive_of(d).rotates ? " transmission" : " drive") + " has no rod");
   }
-  switch (type) {
-    case TransmissionType::slider_crank: validate_slider_crank(d); break;
-    case TransmissionType::direct: validate_direct(d); break;
-    case TransmissionType::four_bar:
-    case TransmissionType::tabulated: break;
-  }
+  validate_hinge_offset(d);
+  if (type == TransmissionType::direct) validate_direct(d);
   if (int(d.spring.stiffness.has_value()) + d.spring.resonance.has_value() + d.spring.resonance_ratio.has_value() > 1) {
     throw ParameterError("spring.stiffness", drive_of(d).alternating
                                                  ? "give one of stiffness, resonance and resonance_ratio"

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "wingbeat/core/names.hpp"
+#include "wingbeat/parts/any_transmission.hpp"
 #include "wingbeat/vehicle/design.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
@@ -58,6 +59,21 @@ template <SupplyType... types>
 using SupplyIs = WhereChosen<SupplyChoice, types...>;
 template <TransmissionType... types>
 using TransmissionIs = WhereChosen<TransmissionChoice, types...>;
+/// Where the transmission's part lists the key.
+template <const ParameterKey& key>
+struct WhereTaken {
+  static constexpr ShortText words = [] {
+    ShortText t;
+    t.add(TransmissionChoice::key);
+    const char* before = " = ";
+    for (const auto& [name, type] : names_of<TransmissionType>) {
+      if (takes_key(type, key.path)) t.add(before).add(name), before = "|";
+    }
+    return t;
+  }();
+  static constexpr std::string_view text = words;
+  static constexpr bool holds(const auto& d) { return takes_key(TransmissionChoice::of(d), key.path); }
+};
 template <PlanformShape... shapes>
 using ShapeIs = WhereChosen<ShapeChoice, shapes...>;
 

@@ -23,7 +23,7 @@ std::span<const Parameter<S>> parameter_table() {
   using detail::Drawn, detail::FormulationChoice, detail::FrictionChoice, detail::Geared, detail::Heated,
       detail::Pitching, detail::PitchingWing, detail::ShapeChoice, detail::ShapeIs, detail::SupplyChoice,
       detail::SupplyIs, detail::TransmissionChoice, detail::TransmissionIs, detail::UnderPitchLaw, detail::Weighed,
-      detail::WeighedSprings;
+      detail::WhereTaken, detail::WeighedSprings;
   using enum PlanformShape;
   using Powered = SupplyIs<SupplyType::constant, SupplyType::pwm>;
   using Sine = SupplyIs<SupplyType::sine, SupplyType::battery_sine>;
@@ -31,8 +31,6 @@ std::span<const Parameter<S>> parameter_table() {
   using Pwm = SupplyIs<SupplyType::pwm>;
   using OnBattery = SupplyIs<SupplyType::battery, SupplyType::battery_sine>;
   using Crank = TransmissionIs<TransmissionType::slider_crank>;
-  using Linkage = TransmissionIs<TransmissionType::slider_crank, TransmissionType::four_bar>;
-  using Bars = TransmissionIs<TransmissionType::four_bar>;
   using StrokeLaw = TransmissionIs<TransmissionType::tabulated>;
   using Direct = TransmissionIs<TransmissionType::direct>;
   using Outline = ShapeIs<semi_ellipse, rectangle>;
@@ -267,38 +265,43 @@ std::span<const Parameter<S>> parameter_table() {
 
       choice<S, TransmissionChoice>(
           "kind of mechanism between motor and wings; direct: the motor shaft is the wing hinge"),
-      number<S, Linkage>(row(crank_radius_key, "required", "r_c, crank radius", {}, "5 mm"),
-                         [](auto& d) -> auto& { return d.transmission.crank_radius; }),
-      number<S, Crank>(row(slider_crank_key::rod_length, "required", "l, rod length", {}, "20 mm"),
-                       [](auto& d) -> auto& { return d.transmission.rod_length; }),
-      alternative<S, Crank>(row(slider_crank_key::hinge_offset, "required",
-                                "H, horizontal distance from slider to wing hinge", {"stroke_amplitude"}, "6 mm"),
-                            hinge_offset, stroke_amplitude),
-      alternative<S, Crank>({"transmission.stroke_amplitude",
-                             "rad",
-                             range::acute,
-                             "required",
-                             "half the peak-to-peak stroke angle; fixes H = r_c / tan(stroke_amplitude); "
-                             "not with mid_stroke_height",
-                             {"hinge_offset"}},
-                            stroke_amplitude, hinge_offset),
-      number<S, Crank>(row(slider_crank_key::mid_stroke_height, "rod_length",
-                           "y_0, slider height over the crank axis at stroke angle zero"),
-                       [](auto& d) -> auto& { return d.transmission.mid_stroke_height; }),
+      number<S, WhereTaken<crank_radius_key>>(row(crank_radius_key, "required", "r_c, crank radius", {}, "5 mm"),
+                                              [](auto& d) -> auto& { return d.transmission.crank_radius; }),
+      number<S, WhereTaken<slider_crank_key::rod_length>>(
+          row(slider_crank_key::rod_length, "required", "l, rod length", {}, "20 mm"),
+          [](auto& d) -> auto& { return d.transmission.rod_length; }),
+      alternative<S, WhereTaken<slider_crank_key::hinge_offset>>(
+          row(slider_crank_key::hinge_offset, "required", "H, horizontal distance from slider to wing hinge",
+              {"stroke_amplitude"}, "6 mm"),
+          hinge_offset, stroke_amplitude),
+      alternative<S, WhereTaken<slider_crank_key::stroke_amplitude>>(
+          row(slider_crank_key::stroke_amplitude, "required",
+              "half the peak-to-peak stroke angle; fixes H = r_c / tan(stroke_amplitude); "
+              "not with mid_stroke_height",
+              {"hinge_offset"}),
+          stroke_amplitude, hinge_offset),
+      number<S, WhereTaken<slider_crank_key::mid_stroke_height>>(
+          row(slider_crank_key::mid_stroke_height, "rod_length",
+              "y_0, slider height over the crank axis at stroke angle zero"),
+          [](auto& d) -> auto& { return d.transmission.mid_stroke_height; }),
       number<S, Weighed>({"transmission.rod_linear_density", "kg/m", range::not_negative, "none: in vehicle.mass",
                           "mass of the rod or coupler over its length: that length times this, in addition to "
                           "vehicle.mass"},
                          [](auto& d) -> auto& { return d.masses.rod_linear_density; }),
-      number<S, Bars>(row(four_bar_key::coupler_length, "required", "l, from crank pin to rocker pin", {}, "20 mm"),
-                      [](auto& d) -> auto& { return d.transmission.coupler_length; }),
-      number<S, Bars>(row(four_bar_key::rocker_length, "required", "p, from rocker axis to rocker pin", {}, "7.5 mm"),
-                      [](auto& d) -> auto& { return d.transmission.rocker_length; }),
-      number<S, Bars>(row(four_bar_key::ground_length, "required", "d, from crank axis to rocker axis", {}, "20.5 mm"),
-                      [](auto& d) -> auto& { return d.transmission.ground_length; }),
-      number<S, Bars>(row(four_bar_key::stroke_ratio, "1",
-                          "n_s, turning angle of the wings over that of the rocker: sector gear or string"),
-                      [](auto& d) -> auto& { return d.transmission.stroke_ratio; }),
-      number<S, Bars>(
+      number<S, WhereTaken<four_bar_key::coupler_length>>(
+          row(four_bar_key::coupler_length, "required", "l, from crank pin to rocker pin", {}, "20 mm"),
+          [](auto& d) -> auto& { return d.transmission.coupler_length; }),
+      number<S, WhereTaken<four_bar_key::rocker_length>>(
+          row(four_bar_key::rocker_length, "required", "p, from rocker axis to rocker pin", {}, "7.5 mm"),
+          [](auto& d) -> auto& { return d.transmission.rocker_length; }),
+      number<S, WhereTaken<four_bar_key::ground_length>>(
+          row(four_bar_key::ground_length, "required", "d, from crank axis to rocker axis", {}, "20.5 mm"),
+          [](auto& d) -> auto& { return d.transmission.ground_length; }),
+      number<S, WhereTaken<four_bar_key::stroke_ratio>>(
+          row(four_bar_key::stroke_ratio, "1",
+              "n_s, turning angle of the wings over that of the rocker: sector gear or string"),
+          [](auto& d) -> auto& { return d.transmission.stroke_ratio; }),
+      number<S, WhereTaken<four_bar_key::ground_angle>>(
           row(four_bar_key::ground_angle, "middle of the rocker's swing",
               "phi_mid, angle of the rocker from the direction crank axis to rocker axis at stroke angle zero"),
           [](auto& d) -> auto& { return d.transmission.ground_angle; }),
@@ -316,9 +319,10 @@ std::span<const Parameter<S>> parameter_table() {
                            {"file"},
                            "[[0, 0], [0.8, 0.5], [1.6, 0.7], [2.4, 0.47], [3.2, -0.04], [4.0, -0.53], [4.8, -0.69], "
                            "[5.6, -0.44]]"}),
-      number<S, StrokeLaw>(row(stroke_table_key::scale, "1", "multiplies the stroke angles of the table"),
-                           [](auto& d) -> auto& { return d.transmission.table.scale; }),
-      number<S, StrokeLaw>(
+      number<S, WhereTaken<stroke_table_key::scale>>(
+          row(stroke_table_key::scale, "1", "multiplies the stroke angles of the table"),
+          [](auto& d) -> auto& { return d.transmission.table.scale; }),
+      number<S, WhereTaken<stroke_table_key::reference_radius>>(
           row(stroke_table_key::reference_radius, "required",
               "r_ref, radius at which the wings' moment is taken up: load-proportional friction acts on "
               "that moment over r_ref",

@@ -5,6 +5,7 @@
 #include <cstddef>
 
 #include "wingbeat/cycle/metric_values.hpp"
+#include "wingbeat/vehicle/coordinates.hpp"
 
 namespace wingbeat {
 
@@ -24,14 +25,20 @@ struct CycleLayout {
   static constexpr bool turns = features.turns, on_hinges = features.on_hinges, inductive = features.inductive;
   static constexpr bool general = features.general;
 
-  // States: the stroke angle of a direct drive, speed, current (or tip of a piezo and its velocity), pitch angle and
-  // pitch velocity, twist and its velocity.
+  // States: the stroke angle of a direct drive, speed, then the groups of StateGroup that there are. No vehicle has
+  // both a current and the tip of a piezo: they share a place.
   static constexpr std::size_t shaft = turns ? 0 : 1;  ///< its speed [rad/s]
-  static constexpr std::size_t current_state = shaft + 1;
-  static constexpr std::size_t tip = shaft + 1;
+  static constexpr std::size_t current_state = shaft + 1, tip = shaft + 1;
   static constexpr std::size_t pitch = shaft + 1 + (inductive ? 1 : 0) + (general && !turns ? 1 : 0);
-  static constexpr std::size_t twist = pitch + (on_hinges ? 2 : 0);
-  static constexpr std::size_t state_count = twist + (general ? 2 : 0);
+  static constexpr std::size_t place(StateGroup group) {
+    if (group < StateGroup::pitch) return current_state;
+    std::size_t next = pitch;
+    for (std::size_t k = std::size_t(StateGroup::pitch); k < std::size_t(group); ++k) next += size_of(StateGroup(k));
+    return next;
+  }
+  static constexpr std::size_t twist = place(StateGroup::twist);
+  static constexpr std::size_t state_count =
+      general ? place(StateGroup(state_group_count)) : pitch + (on_hinges ? 2 : 0);
 
   // Switches: of a direct drive velocity and end of a standstill; rod force and gear torque; under the pitch law its
   // bound, on hinges pitch velocity and stop; where a twisting wing's local pitch turns back, and the limits of a

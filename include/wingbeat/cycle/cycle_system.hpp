@@ -114,23 +114,21 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
     return relative_energy_gap(vehicle, totals);
   }
 
-  /// The state where everything is like this.
+  /// The state where everything is like this; of a general system without the tip of a piezo.
   static State state_of(const Coordinates<S>& c) {
     State y{};
     if constexpr (!turns) y[0] = c.angle;
     y[shaft] = c.speed;
-    if constexpr (inductive) y[current_state] = c.current;
-    if constexpr (on_hinges) y[pitch] = c.pitch_angle, y[pitch + 1] = c.pitch_velocity;
-    if constexpr (general) y[twist] = c.twist_angle, y[twist + 1] = c.twist_velocity;
+    for_groups([&](StateGroup, std::size_t place, const GroupState<S>& state) { y[place] = c.*state.number; });
     return y;
   }
-  /// Those of a vehicle with a current and of one with a compliant piezo have different states in the same place.
   static State state_of(const Coordinates<S>& c, const Vehicle<S>& v)
     requires(features_.general)
   {
     State y = state_of(c);
-    if (!has_current_state(v)) y[current_state] = is_compliant(v.piezo) ? c.tip : S(0.0);
-    if constexpr (!turns) y[tip + 1] = c.tip_velocity;
+    if (!has_current_state(v)) y[current_state] = S(0.0);
+    if constexpr (!turns) y[tip + 1] = S(0.0);
+    if (is_compliant(v.piezo)) y[tip] = c.tip, y[tip + 1] = c.tip_velocity;
     return y;
   }
   /// How everything is in a state; what the vehicle does not have is 0.
@@ -138,12 +136,8 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
     Coordinates<S> c;
     c.angle = turns ? x : y[0];
     c.speed = y[shaft];
-    if constexpr (inductive) c.current = y[current_state];
-    if constexpr (on_hinges) c.pitch_angle = y[pitch], c.pitch_velocity = y[pitch + 1];
-    if constexpr (general) {
-      c.twist_angle = y[twist], c.twist_velocity = y[twist + 1];
-      if constexpr (!turns) c.tip = y[tip], c.tip_velocity = y[tip + 1];
-    }
+    for_groups([&](StateGroup, std::size_t place, const GroupState<S>& state) { c.*state.number = y[place]; });
+    if constexpr (general && !turns) c.tip = y[tip], c.tip_velocity = y[tip + 1];
     return c;
   }
   /// Pitch of the wings where it is reported [rad], of a state or its rate.
@@ -385,6 +379,19 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
   }
 
  private:
+  /// Calls use(group, place, state) for each state beside the shaft's, but for a piezo's.
+  template <class Use>
+  [[gnu::always_inline]] static constexpr void for_groups(const Use& use) {
+    const auto states_of = [&](StateGroup group) {
+      for_states_of<S>(group, Layout::place(group),
+                       [&](std::size_t place, const GroupState<S>& state) { use(group, place, state); });
+    };
+    if constexpr (inductive) states_of(StateGroup::current);
+    if constexpr (on_hinges) states_of(StateGroup::pitch);
+    if constexpr (general) {
+      for (std::size_t k = std::size_t(StateGroup::twist); k < state_group_count; ++k) states_of(StateGroup(k));
+    }
+  }
   static S pitch_velocity(const State& y, const Signs& signs) {
     return select(signs[held] >= S(0.0), y[pitch + 1], S(0.0));
   }
@@ -427,7 +434,7 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
     if constexpr (on_hinges) {
       const bool is_held = pitch_stops::is_held<CycleSystem>(signs);
       const bool hinged = !general || is_hinged(vehicle);
-      if (hinged) {
+      if constexpr (!general) {
         r.dy[pitch] = is_held ? S(0.0) : S(y[pitch + 1] * per_rate);
         r.dy[pitch + 1] = m.pitch_acceleration * per_rate;
       }
@@ -450,28 +457,22 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
   /// Rates of what only vehicles of further kinds have; states that this one lacks fade away.
   void further_rates(const S& x, const State& y, const Signs& signs, const PitchMotion<S>& m, const S& per_rate,
                      solver::Rates<CycleSystem>& r) const {
-    const bool compliant = is_compliant(vehicle.piezo), twisting = twists(vehicle.pitch.torsion);
+    const Coordinates<S> here = coordinates(x, y), rates = rates_of(vehicle, here, instant(x, y, signs), m);
     for (std::size_t n = current_state; n < y.size(); ++n) r.dy[n] = -y[n];
-    if (has_current_state(vehicle)) {
-      r.dy[current_state] = m.inductive_voltage / vehicle.motor.armature_inductance * per_rate;
-    }
+    const auto take = [&](StateGroup group, std::size_t place, const GroupState<S>& state) {
+      if (has_states(vehicle, group)) r.dy[place] = rates.*state.number * per_rate;
+    };
+    for_groups(take);
     if constexpr (!turns) {
-      if (compliant) {
-        r.dy[tip] = y[tip + 1] * per_rate;
-        r.dy[tip + 1] = instant(x, y, signs).tip_acceleration * per_rate;
-      }
+      for_states_of<S>(StateGroup::tip, tip,
+                       [&](std::size_t place, const GroupState<S>& state) { take(StateGroup::tip, place, state); });
     }
     if (!pitches(vehicle)) {
       r.switches[pitching] = m.aero.pitch_margin;
     } else {
       r.switches[pitching] = S(1.0);
     }
-    r.switches[local_turn] = S(1.0);
-    if (twisting) {
-      r.dy[twist] = y[twist + 1] * per_rate;
-      r.dy[twist + 1] = m.twist_acceleration * per_rate;
-      r.switches[local_turn] = local_pitch_velocity(coordinates(x, y));
-    }
+    r.switches[local_turn] = twists(vehicle.pitch.torsion) ? local_pitch_velocity(here) : S(1.0);
     r.switches[bridge] = electronics_events::bridge_switch(*this, x, y, signs);
     r.switches[limit] = electronics_events::limit_switch(*this, x, y, signs);
   }

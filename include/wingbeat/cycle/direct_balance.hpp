@@ -4,6 +4,7 @@
 #include <complex>
 #include <vector>
 
+#include "wingbeat/vehicle/coordinates.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
@@ -49,5 +50,8 @@ double typical_current(const Vehicle<double>& vehicle, const DirectBalance& bala
 double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity);
 /// typical_pitch() of wings that swing at an angular frequency [rad/s] which the supply does not set.
 double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity, double angular_frequency);
+/// Puts typical sizes of what moves in such wings into `typical`; nothing of wings under the pitch law.
+void add_typical_wings(const Vehicle<double>& vehicle, double stroke_velocity, double angular_frequency,
+                       Coordinates<double>& typical);
 
 }  // namespace wingbeat

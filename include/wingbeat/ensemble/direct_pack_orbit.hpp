@@ -171,8 +171,9 @@ Metrics<L> DirectPackOrbit<L, N>::solve(const L& mass, const L& bench_torque_con
   const Cycle fine = read();
   decided_ = decided_ && newton_change_ <= L(settings_.closed);
 
+  // What is not integrated here leaves its metrics absent.
   CycleIntegrals<L> integrals;
-  integrals.fill(L(0.0));
+  integrals.fill(L(absent));
   const auto total = [&](Integral which) -> L& { return integrals[std::size_t(which)]; };
   total(Integral::time) = inverse_of(vehicle_.drive_frequency);
   total(Integral::current_square) = fine.current_square;
@@ -184,6 +185,9 @@ Metrics<L> DirectPackOrbit<L, N>::solve(const L& mass, const L& bench_torque_con
   total(Integral::travel) = L(4.0) * fine.stroke;
   total(Integral::lift) = fine.lift;
   total(Integral::reactive_work) = fine.reactive_work;
+  for (const Integral none : {Integral::current, Integral::residual_work, Integral::rod_force, Integral::gear_work}) {
+    total(none) = L(0.0);
+  }
   CycleExtremes<L> extremes;
   extremes.fill(L(0.0));
   const auto extreme = [&](Extreme which) -> L& { return extremes[std::size_t(which)]; };

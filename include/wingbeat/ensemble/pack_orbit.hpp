@@ -415,13 +415,15 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   iterate();
   newton_iteration<Newton::last>();
 
+  // What is not integrated here leaves its metrics absent.
   CycleIntegrals<L> integrals;
-  integrals.fill(L(0.0));
+  integrals.fill(L(absent));
   const auto total = [&](Integral which) -> L& { return integrals[std::size_t(which)]; };
   for (std::size_t q = 0; q < pack_integrals.size(); ++q) total(pack_integrals[q]) = integrals_[q];
   total(Integral::electrical_work) =
       vehicle_.voltage * total(Integral::current) - vehicle_.source_resistance * total(Integral::current_square);
   total(Integral::travel) = L(two_pi);
+  total(Integral::gear_work) = L(0.0);
   total(Integral::motor_work) =
       total(Integral::friction_work) + total(Integral::aero_work) + total(Integral::residual_work);
   const auto is_wanted = [&](Quantity q) { return wanted_[std::size_t(q)]; };

@@ -1,6 +1,8 @@
-// The transmissions that a vehicle can have, one at a time. A further one is a part that satisfies the concept of
-// transmission.hpp, a name, a member and a case here.
+// The transmissions that a vehicle can have, one at a time: the rows of transmission_type.hpp, whose headers are
+// included here.
 #pragma once
+
+#include <string_view>
 
 #include "wingbeat/core/members.hpp"
 #include "wingbeat/core/scalar.hpp"
@@ -17,27 +19,55 @@ namespace wingbeat {
 template <Scalar S>
 struct AnyTransmission {
   TransmissionType type = TransmissionType::slider_crank;
-  SliderCrank<S> slider_crank = {};
-  FourBar<S> four_bar = {};
-  StrokeTable<S> tabulated = {};
-  DirectDrive<S> direct = {};
+#define WINGBEAT_MEMBER(type, name, Part) Part<S> type = {};
+  WINGBEAT_TRANSMISSIONS(WINGBEAT_MEMBER)
+#undef WINGBEAT_MEMBER
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
-    return use(self.type, self.slider_crank, self.four_bar, self.tabulated, self.direct);
+#define WINGBEAT_LISTED(type, name, Part) , self.type
+    return use(self.type WINGBEAT_TRANSMISSIONS(WINGBEAT_LISTED));
+#undef WINGBEAT_LISTED
   }
 };
 
-/// Calls use(transmission) with the one that it is.
+/// Calls use(transmission) with the one that it is; a direct drive, which turns no crank, with a slider-crank.
 template <Scalar S, class Use>
 constexpr auto visit(const AnyTransmission<S>& t, const Use& use) {
-  switch (t.type) {
-    case TransmissionType::four_bar: return use(t.four_bar);
-    case TransmissionType::tabulated: return use(t.tabulated);
-    case TransmissionType::slider_crank:
-    case TransmissionType::direct: break;
-  }
+#define WINGBEAT_CASE(enumerator, name, Part)                         \
+  case TransmissionType::enumerator:                                  \
+    if constexpr (Transmission<Part<S>, S>) return use(t.enumerator); \
+    break;
+  switch (t.type) { WINGBEAT_TRANSMISSIONS(WINGBEAT_CASE) }
+#undef WINGBEAT_CASE
   return use(t.slider_crank);
+}
+
+/// The transmission that a design describes in `design`, a TransmissionDesign.
+template <Scalar S, class Design>
+AnyTransmission<S> transmission_from(const Design& design) {
+  AnyTransmission<S> transmission{};
+  transmission.type = design.type;
+#define WINGBEAT_CASE(enumerator, name, Part) \
+  case TransmissionType::enumerator: transmission.enumerator = Part<S>::from(design); break;
+  switch (design.type) { WINGBEAT_TRANSMISSIONS(WINGBEAT_CASE) }
+#undef WINGBEAT_CASE
+  return transmission;
+}
+
+/// Whether [transmission] takes that key for a transmission of that type.
+constexpr bool takes_key(TransmissionType type, std::string_view key) {
+  const auto listed = [&](const auto& keys) {
+    for (const std::string_view each : keys) {
+      if (each == key) return true;
+    }
+    return false;
+  };
+#define WINGBEAT_CASE(enumerator, name, Part) \
+  case TransmissionType::enumerator: return listed(Part<double>::keys);
+  switch (type) { WINGBEAT_TRANSMISSIONS(WINGBEAT_CASE) }
+#undef WINGBEAT_CASE
+  return false;
 }
 
 namespace detail {

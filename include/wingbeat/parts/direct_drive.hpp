@@ -1,6 +1,9 @@
 // A direct drive as a transmission: the motor's shaft is the wings' hinge; model.md section 6.
 #pragma once
 
+#include <array>
+#include <string_view>
+
 #include "wingbeat/core/range.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/parts/transmission.hpp"
@@ -12,6 +15,12 @@ struct DirectDrive {
   /// r_ref [m], at which the wings' moment is taken up: friction that follows the load acts on that moment over r_ref,
   /// which takes the place of the rod force. 1 where no friction does.
   S reference_radius = S(1);
+
+  static constexpr std::array<std::string_view, 0> keys = {};  ///< [transmission] holds none
+  template <class Design>
+  static DirectDrive from(const Design&) {
+    return {};
+  }
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {

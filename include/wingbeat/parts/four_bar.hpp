@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cmath>
+#include <string_view>
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/members.hpp"
@@ -10,6 +11,15 @@
 #include "wingbeat/parts/transmission.hpp"
 
 namespace wingbeat {
+
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace four_bar_key {
+inline constexpr ParameterKey coupler_length{"transmission.coupler_length", "m", range::positive};
+inline constexpr ParameterKey rocker_length{"transmission.rocker_length", "m", range::positive};
+inline constexpr ParameterKey ground_length{"transmission.ground_length", "m", range::positive};
+inline constexpr ParameterKey stroke_ratio{"transmission.stroke_ratio", "1", range::positive};
+inline constexpr ParameterKey ground_angle{"transmission.ground_angle", "rad", range::any};
+}  // namespace four_bar_key
 
 /// Crank axis at the origin, rocker axis at d on the x axis, the rocker pointing to y > 0. The crank angle theta is
 /// measured from the line of the two axes and grows with rotation. Loop closure with the angles \f$\varphi\f$ of the
@@ -27,21 +37,26 @@ struct FourBar {
   S stroke_ratio = S(1);    ///< n_s, turning angle of the wings over that of the rocker [1], > 0
   S ground_angle = S(0);    ///< phi_mid, from the ground link to the rocker at stroke angle zero [rad]
 
+  static constexpr std::string_view keys[] = {crank_radius_key.path,
+                                              four_bar_key::coupler_length.path,
+                                              four_bar_key::rocker_length.path,
+                                              four_bar_key::ground_length.path,
+                                              four_bar_key::stroke_ratio.path,
+                                              four_bar_key::ground_angle.path};
+  /// From a TransmissionDesign.
+  template <class Design>
+  static FourBar from(const Design& d) {
+    FourBar f{d.crank_radius, d.coupler_length, d.rocker_length, d.ground_length, d.stroke_ratio};
+    f.ground_angle = d.ground_angle ? *d.ground_angle : centred_ground_angle(f);
+    return f;
+  }
+
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.crank_radius, self.coupler_length, self.rocker_length, self.ground_length, self.stroke_ratio,
                self.ground_angle);
   }
 };
-
-/// Keys, units and ranges; the table of parameters has them from here.
-namespace four_bar_key {
-inline constexpr ParameterKey coupler_length{"transmission.coupler_length", "m", range::positive};
-inline constexpr ParameterKey rocker_length{"transmission.rocker_length", "m", range::positive};
-inline constexpr ParameterKey ground_length{"transmission.ground_length", "m", range::positive};
-inline constexpr ParameterKey stroke_ratio{"transmission.stroke_ratio", "1", range::positive};
-inline constexpr ParameterKey ground_angle{"transmission.ground_angle", "rad", range::any};
-}  // namespace four_bar_key
 
 /// Least transmission angle between coupler and rocker, and least distance from 180 deg [deg]: beyond, the coupler has
 /// hardly a lever.

@@ -52,6 +52,30 @@ inline void validate(const Friction<double>& f) {
   require(friction_key::torque, f.torque);
 }
 
+/// The coefficient of a law; of none there is none.
+template <Scalar S>
+S* coefficient_of(Friction<S>& f, FrictionLaw law) {
+  switch (law) {
+    case FrictionLaw::none: break;
+    case FrictionLaw::load_proportional: return &f.radius;
+    case FrictionLaw::viscous: return &f.damping;
+    case FrictionLaw::quadratic: return &f.quadratic;
+    case FrictionLaw::constant: return &f.torque;
+  }
+  return nullptr;
+}
+/// Its key; null of none.
+constexpr const ParameterKey* key_of(FrictionLaw law) {
+  switch (law) {
+    case FrictionLaw::none: break;
+    case FrictionLaw::load_proportional: return &friction_key::radius;
+    case FrictionLaw::viscous: return &friction_key::damping;
+    case FrictionLaw::quadratic: return &friction_key::quadratic;
+    case FrictionLaw::constant: return &friction_key::torque;
+  }
+  return nullptr;
+}
+
 /// The friction of `count` equal transmissions that move in phase, against their common speed: what follows the load
 /// follows the sum of their rod forces (model.md section 13). For M of them:
 /// \f[
@@ -79,6 +103,16 @@ S load_free_friction(const Friction<S>& f, const S& omega, const S& direction) {
 template <Scalar S>
 S load_friction(const Friction<S>& f, const S& rod_force_magnitude, const S& direction) {
   return direction * f.radius * rod_force_magnitude;
+}
+
+/// The coefficient with which a law by itself takes a torque [N m] at that crank speed [rad/s] and rod force [N]; all
+/// positive.
+inline double coefficient_for(FrictionLaw law, double torque, double omega, double rod_force) {
+  Friction<double> unit;
+  double* coefficient = coefficient_of(unit, law);
+  if (!coefficient) return 0.0;
+  *coefficient = 1.0;
+  return torque / (load_free_friction(unit, omega, 1.0) + load_friction(unit, rod_force, 1.0));
 }
 
 }  // namespace wingbeat

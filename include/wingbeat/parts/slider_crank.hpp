@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <string_view>
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/scalar.hpp"
@@ -10,6 +11,28 @@
 #include "wingbeat/parts/transmission_type.hpp"
 
 namespace wingbeat {
+
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace slider_crank_key {
+inline constexpr ParameterKey rod_length{
+    "transmission.rod_length",
+    "m",
+    {"> crank_radius", "must be longer than the crank radius", 0.0, range::endless, true}};
+inline constexpr ParameterKey hinge_offset{"transmission.hinge_offset", "m", range::positive};
+inline constexpr ParameterKey mid_stroke_height{"transmission.mid_stroke_height", "m", range::any};
+inline constexpr ParameterKey stroke_amplitude{"transmission.stroke_amplitude", "rad", range::acute};
+}  // namespace slider_crank_key
+
+/// The hinge offset H [m] that gives a stroke amplitude \f$\beta_\mathrm{max}\f$ [rad] with the mid-stroke at
+/// \f$y_0 = l\f$.
+/// \f[
+/// H = \frac{r_\mathrm{c}}{\tan\beta_\mathrm{max}}
+/// \f]
+template <Scalar S>
+S hinge_offset_for(const S& amplitude, const S& crank_radius) {
+  using std::tan;
+  return crank_radius / tan(amplitude);
+}
 
 /// Geometry of the mechanism. The crank angle theta is measured from the horizontal and grows with rotation. The rod is
 /// at \f$\gamma\f$ from the vertical, the slider at the height y over the crank axis (model.md section 1):
@@ -25,21 +48,21 @@ struct SliderCrank {
   S mid_stroke_height = S(0);  ///< y_0, slider height over the crank axis at stroke angle zero [m]; l unless given
   Formulation formulation = Formulation::rod_force;
 
+  static constexpr std::string_view keys[] = {
+      crank_radius_key.path, slider_crank_key::rod_length.path, slider_crank_key::hinge_offset.path,
+      slider_crank_key::stroke_amplitude.path, slider_crank_key::mid_stroke_height.path};
+  /// From a TransmissionDesign that states the hinge offset or the stroke amplitude.
+  template <class Design>
+  static SliderCrank from(const Design& d) {
+    const S H = d.hinge_offset ? *d.hinge_offset : hinge_offset_for<S>(*d.stroke_amplitude, d.crank_radius);
+    return {d.crank_radius, d.rod_length, H, d.mid_stroke_height ? *d.mid_stroke_height : d.rod_length, d.formulation};
+  }
+
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.crank_radius, self.rod_length, self.hinge_offset, self.mid_stroke_height, self.formulation);
   }
 };
-
-/// Keys, units and ranges; the table of parameters has them from here.
-namespace slider_crank_key {
-inline constexpr ParameterKey rod_length{
-    "transmission.rod_length",
-    "m",
-    {"> crank_radius", "must be longer than the crank radius", 0.0, range::endless, true}};
-inline constexpr ParameterKey hinge_offset{"transmission.hinge_offset", "m", range::positive};
-inline constexpr ParameterKey mid_stroke_height{"transmission.mid_stroke_height", "m", range::any};
-}  // namespace slider_crank_key
 
 inline void validate(const SliderCrank<double>& c) {
   namespace key = slider_crank_key;
@@ -166,17 +189,6 @@ S stroke_amplitude(const SliderCrank<S>& c) {
   const S top = atan((c.rod_length + c.crank_radius - c.mid_stroke_height) / c.hinge_offset);
   const S bottom = atan((c.rod_length - c.crank_radius - c.mid_stroke_height) / c.hinge_offset);
   return S(0.5) * (top - bottom);
-}
-
-/// The hinge offset H [m] that gives a stroke amplitude \f$\beta_\mathrm{max}\f$ [rad] with the mid-stroke at
-/// \f$y_0 = l\f$.
-/// \f[
-/// H = \frac{r_\mathrm{c}}{\tan\beta_\mathrm{max}}
-/// \f]
-template <Scalar S>
-S hinge_offset_for(const S& amplitude, const S& crank_radius) {
-  using std::tan;
-  return crank_radius / tan(amplitude);
 }
 
 }  // namespace wingbeat

@@ -6,6 +6,7 @@
 #include <limits>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <type_traits>
 #include <utility>
 #include <vector>
@@ -52,6 +53,12 @@ class StrokeCurve {
   Reversals reversals_;
 };
 
+/// Keys, units and ranges; the table of parameters has them from here.
+namespace stroke_table_key {
+inline constexpr ParameterKey scale{"transmission.stroke_scale", "1", range::positive};
+inline constexpr ParameterKey reference_radius{"transmission.reference_radius", "m", range::positive};
+}  // namespace stroke_table_key
+
 /// A curve times a scale \f$s\f$. Friction acts on the reaction to the wings' moment at the radius r_ref, with levers
 /// that conserve power (model.md section 8).
 /// \f[
@@ -65,17 +72,18 @@ struct StrokeTable {
   S scale = S(1);             ///< multiplies the table's stroke angles [1], > 0
   S reference_radius = S(0);  ///< r_ref [m], > 0
 
+  static constexpr std::string_view keys[] = {stroke_table_key::scale.path, stroke_table_key::reference_radius.path};
+  /// From a TransmissionDesign.
+  template <class Design>
+  static StrokeTable from(const Design& d) {
+    return d.table;
+  }
+
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.curve, self.scale, self.reference_radius);
   }
 };
-
-/// Keys, units and ranges; the table of parameters has them from here.
-namespace stroke_table_key {
-inline constexpr ParameterKey scale{"transmission.stroke_scale", "1", range::positive};
-inline constexpr ParameterKey reference_radius{"transmission.reference_radius", "m", range::positive};
-}  // namespace stroke_table_key
 
 void validate(const StrokeTable<double>& t);
 

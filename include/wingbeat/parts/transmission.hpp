@@ -40,7 +40,7 @@ S stroke_angle(const CrankKinematics<S>& k) {
   return k.stroke_offset + atan(k.tan_stroke);
 }
 
-/// The key that slider-crank and four-bar share; what it is compared with, their validate() knows.
+/// The key that slider-cranks and four-bars share; what it is compared with, their validate() knows.
 inline constexpr ParameterKey crank_radius_key{
     "transmission.crank_radius", "m", {"> 0, < every other link", "must be > 0", 0.0, range::endless, true}};
 

@@ -7,18 +7,24 @@
 
 namespace wingbeat {
 
-enum class TransmissionType {
-  slider_crank,
-  four_bar,
-  tabulated,
-  direct  ///< the motor shaft is the wing hinge: its angle is the stroke angle
-};
+/// A row for each transmission: its enumerator, its name in vehicle files, the type of its part. A further one is a
+/// header that satisfies the concept of transmission.hpp, a row here, and its #include in any_transmission.hpp. Direct:
+/// the motor shaft is the wing hinge, its angle is the stroke angle.
+#define WINGBEAT_TRANSMISSIONS(ROW)              \
+  ROW(slider_crank, "slider-crank", SliderCrank) \
+  ROW(four_bar, "four-bar", FourBar)             \
+  ROW(tabulated, "tabulated", StrokeTable)       \
+  ROW(direct, "direct", DirectDrive)
+
+#define WINGBEAT_ENUMERATOR(type, name, Part) type,
+enum class TransmissionType { WINGBEAT_TRANSMISSIONS(WINGBEAT_ENUMERATOR) };
+#undef WINGBEAT_ENUMERATOR
+
+#define WINGBEAT_NAME(type, name, Part) {name, TransmissionType::type},
 template <>
 inline constexpr std::pair<const char*, TransmissionType> names_of<TransmissionType>[] = {
-    {"slider-crank", TransmissionType::slider_crank},
-    {"four-bar", TransmissionType::four_bar},
-    {"tabulated", TransmissionType::tabulated},
-    {"direct", TransmissionType::direct}};
+    WINGBEAT_TRANSMISSIONS(WINGBEAT_NAME)};
+#undef WINGBEAT_NAME
 
 /// How the rod force turns the wings (model.md section 2).
 enum class Formulation {

@@ -7,12 +7,8 @@
 // (right) or -y (left) towards x. Half of the blade moments S_n is on either side.
 //
 // A strip at r has the span direction e_r = (sin beta, +-cos beta, 0), moves along e_t = (cos beta, -+sin beta, 0) and
-// gains dV = v + omega x p, p = (0, +-d, 0) + r e_r, from the body. To first order in dV, s = sign(beta'),
-// w = dV . e_z:
-//   upwards           rho c r |beta'| (C_L s e_t.dV + (C_L' + C_D) w / 2) dr
-//   along s e_t       rho c r |beta'| (-C_D s e_t.dV + (C_L - C_D') w / 2) dr
-// with the coefficients and their slopes at the angle of attack of the instant. Of wings on hinges C_L = C_N cos alpha
-// and C_D = C_N sin alpha; rotational lift and added mass are left out.
+// gains dV = v + omega x p, p = (0, +-d, 0) + r e_r, from the body: the force on it follows from its velocity
+// (parts/strip_force.hpp), to first order in dV; rotational lift and added mass are left out.
 #pragma once
 
 #include <Eigen/Core>

@@ -26,7 +26,7 @@ struct SimulationOptions {
   /// At the start: theta or, of a direct drive, beta [rad], their rate [rad/s], i [A], psi [rad], psi' [rad/s]. Without
   /// inductance the current follows from the voltage, and without hinges there is no pitch.
   double angle = 0.0, speed = 0.0, current = 0.0, pitch_angle = 0.0, pitch_velocity = 0.0;
-  /// The same of wings that twist: tau [rad], tau' [rad/s]; of a piezo behind a compliant transmission x [m], x' [m/s].
+  /// Those of wings that twist: tau [rad], tau' [rad/s]; of a piezo behind a compliant transmission x [m], x' [m/s].
   double twist_angle = 0.0, twist_velocity = 0.0, tip = 0.0, tip_velocity = 0.0;
 
   Coordinates<double> start() const {

@@ -40,7 +40,7 @@ struct TransientOptions {
   double record_interval = 0.0;  ///< time between samples [s]; 0: every step of the integrator
 
   std::optional<Supply<double>> supply;  ///< replaces the constant vehicle.voltage; not for a direct drive
-  /// Direct drive, or wings that pitch: instants of the last cycle to return, both ends included; 0: none.
+  /// Instants of a settled cycle to return, both ends included; 0: none.
   int cycle_rows = 0;
   /// False, for a crank under constant voltage: ends as soon as cycles are within 1e-4 of where they settle, and
   /// gives no metrics.

@@ -292,12 +292,8 @@ std::optional<WingMass<S>> wing_mass(const WingDesign<S>& wing) {
 /// Length of the rod, of a four-bar the coupler [m]; empty where there is none.
 template <Scalar S>
 std::optional<S> rod_length(const TransmissionDesign<S>& t) {
-  switch (t.type) {
-    case TransmissionType::slider_crank: return t.rod_length;
-    case TransmissionType::four_bar: return t.coupler_length;
-    case TransmissionType::tabulated:
-    case TransmissionType::direct: break;
-  }
+  if (t.type == TransmissionType::slider_crank) return t.rod_length;
+  if (t.type == TransmissionType::four_bar) return t.coupler_length;
   return std::nullopt;
 }
 

@@ -138,6 +138,18 @@ PitchMotion<S> evaluate(const Vehicle<S>& v, const FullState<S>& instant, const 
   return m;
 }
 
+/// The rate of each coordinate where `m` acts at an instant of these coordinates.
+template <Scalar S>
+Coordinates<S> rates_of(const Vehicle<S>& v, const Coordinates<S>& place, const FullState<S>& instant,
+                        const PitchMotion<S>& m) {
+  Coordinates<S> rates{instant.omega, m.crank_acceleration};
+  if (has_current_state(v)) rates.current = m.inductive_voltage / v.motor.armature_inductance;
+  rates.tip = place.tip_velocity, rates.tip_velocity = instant.tip_acceleration;
+  rates.pitch_angle = instant.pitch_velocity, rates.pitch_velocity = m.pitch_acceleration;
+  rates.twist_angle = place.twist_velocity, rates.twist_velocity = m.twist_acceleration;
+  return rates;
+}
+
 /// Whether the torque on the shaft jumps where its speed changes sign, which then decides: by constant friction,
 /// friction that follows the load, or a gearbox that loses torque. A crank always counts as one that does.
 template <Scalar S>

@@ -1,6 +1,7 @@
 // Where what moves in a vehicle is among the unknowns of those who integrate it.
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 #include "wingbeat/parts/wing_torsion.hpp"
@@ -19,8 +20,6 @@ S local_pitch_velocity(const Coordinates<S>& c) {
   return c.pitch_velocity + S(reported_station) * c.twist_velocity;
 }
 
-inline constexpr std::size_t max_unknowns = 8;
-
 /// True of wings that pitch on hinges.
 template <Scalar S>
 bool is_hinged(const Vehicle<S>& v) {
@@ -34,41 +33,63 @@ bool is_of_further_kind(const Vehicle<S>& v) {
   return twists(v.pitch.torsion) || is_given(v.piezo) || limits_current(v.electronics);
 }
 
-/// Where the coordinates of a vehicle are among its unknowns: shaft, actuator, pitch, twist, without those that it does
-/// not have.
+/// Whether a vehicle has the states of a group.
+template <Scalar S>
+bool has_states(const Vehicle<S>& v, StateGroup group) {
+  switch (group) {
+    case StateGroup::current: return has_current_state(v);
+    case StateGroup::tip: return is_compliant(v.piezo);
+    case StateGroup::pitch: return is_hinged(v);
+    case StateGroup::twist: return twists(v.pitch.torsion);
+  }
+  return false;
+}
+
+/// Of a vehicle that has all but a current, which a piezo does not.
+inline constexpr std::size_t max_unknowns = [] {
+  std::size_t count = 1;
+  for (std::size_t group = 0; group < state_group_count; ++group) count += size_of(StateGroup(group));
+  return count;
+}();
+
+/// Where the coordinates of a vehicle are among its unknowns: shaft, then the groups that it has.
 struct UnknownIndices {
-  bool rotates, inductive, compliant, pitching, twisting;
-  std::size_t current, tip, pitch, twist, count;
+  bool rotates;
+  std::array<bool, state_group_count> has{};
+  std::array<std::size_t, state_group_count> first{};  ///< of a group that the vehicle has
+  std::size_t count = 2;
+  bool inductive, compliant, pitching, twisting;
+  std::size_t current, pitch;
 
   template <Scalar S>
-  explicit UnknownIndices(const Vehicle<S>& v)
-      : rotates(drive_of(v).rotates),
-        inductive(has_current_state(v)),
-        compliant(is_compliant(v.piezo)),
-        pitching(is_hinged(v)),
-        twisting(twists(v.pitch.torsion)),
-        current(2),
-        tip(2),
-        pitch(2u + (inductive ? 1u : 0u) + (compliant ? 2u : 0u)),
-        twist(pitch + (pitching ? 2u : 0u)),
-        count(twist + (twisting ? 2u : 0u)) {}
+  explicit UnknownIndices(const Vehicle<S>& v) : rotates(drive_of(v).rotates) {
+    for (std::size_t k = 0; k < state_group_count; ++k) {
+      has[k] = has_states(v, StateGroup(k));
+      first[k] = count;
+      if (has[k]) count += size_of(StateGroup(k));
+    }
+    inductive = has[std::size_t(StateGroup::current)], compliant = has[std::size_t(StateGroup::tip)];
+    pitching = has[std::size_t(StateGroup::pitch)], twisting = has[std::size_t(StateGroup::twist)];
+    current = first[std::size_t(StateGroup::current)], pitch = first[std::size_t(StateGroup::pitch)];
+  }
 
+  /// Calls use(index, state) for each unknown beside the shaft's angle and speed.
+  template <Scalar S, class Use>
+  void for_each(const Use& use) const {
+    for (std::size_t k = 0; k < state_group_count; ++k) {
+      if (has[k]) for_states_of<S>(StateGroup(k), first[k], use);
+    }
+  }
   template <Scalar S>
   Coordinates<S> coordinates(const S* y) const {
     Coordinates<S> c{y[0], y[1]};
-    if (inductive) c.current = y[current];
-    if (compliant) c.tip = y[tip], c.tip_velocity = y[tip + 1];
-    if (pitching) c.pitch_angle = y[pitch], c.pitch_velocity = y[pitch + 1];
-    if (twisting) c.twist_angle = y[twist], c.twist_velocity = y[twist + 1];
+    for_each<S>([&](std::size_t n, const GroupState<S>& state) { c.*state.number = y[n]; });
     return c;
   }
   template <Scalar S>
   void unknowns(const Coordinates<S>& c, S* y) const {
     y[0] = c.angle, y[1] = c.speed;
-    if (inductive) y[current] = c.current;
-    if (compliant) y[tip] = c.tip, y[tip + 1] = c.tip_velocity;
-    if (pitching) y[pitch] = c.pitch_angle, y[pitch + 1] = c.pitch_velocity;
-    if (twisting) y[twist] = c.twist_angle, y[twist + 1] = c.twist_velocity;
+    for_each<S>([&](std::size_t n, const GroupState<S>& state) { y[n] = c.*state.number; });
   }
 };
 

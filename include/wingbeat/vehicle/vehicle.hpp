@@ -66,24 +66,7 @@ bool pitches(const Vehicle<S>& v) {
 /// The transmission that a design describes.
 template <Scalar S>
 AnyTransmission<S> transmission_of(const TransmissionDesign<S>& t) {
-  AnyTransmission<S> transmission{};
-  transmission.type = t.type;
-  switch (t.type) {
-    case TransmissionType::slider_crank: {
-      const S H = t.hinge_offset ? *t.hinge_offset : hinge_offset_for<S>(*t.stroke_amplitude, t.crank_radius);
-      const S y_0 = t.mid_stroke_height ? *t.mid_stroke_height : t.rod_length;
-      transmission.slider_crank = {t.crank_radius, t.rod_length, H, y_0, t.formulation};
-      break;
-    }
-    case TransmissionType::four_bar:
-      transmission.four_bar = {t.crank_radius, t.coupler_length, t.rocker_length, t.ground_length, t.stroke_ratio};
-      transmission.four_bar.ground_angle =
-          t.ground_angle ? *t.ground_angle : centred_ground_angle(transmission.four_bar);
-      break;
-    case TransmissionType::tabulated: transmission.tabulated = t.table; break;
-    case TransmissionType::direct: break;
-  }
-  return transmission;
+  return transmission_from<S>(t);
 }
 
 /// What a design says of its motor's temperatures.
@@ -188,13 +171,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   if (design.friction.reference_radius) v.transmission.direct.reference_radius = *design.friction.reference_radius;
 
   const S& coefficient = design.friction.coefficient;
-  switch (design.friction.law) {
-    case FrictionLaw::none: break;
-    case FrictionLaw::load_proportional: v.friction.radius = coefficient; break;
-    case FrictionLaw::viscous: v.friction.damping = coefficient; break;
-    case FrictionLaw::quadratic: v.friction.quadratic = coefficient; break;
-    case FrictionLaw::constant: v.friction.torque = coefficient; break;
-  }
+  if (S* of_law = coefficient_of(v.friction, design.friction.law)) *of_law = coefficient;
   v.friction = side_by_side(v.friction, M);
 
   const bool wings = condition != Condition::wingless;
