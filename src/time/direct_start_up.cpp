@@ -53,8 +53,7 @@ void DirectStartUp::period_done() {
   if (rests_for_good() || creeps_to_rest()) return;
 
   const auto scale = model_.typical();
-  std::array<double, max_unknowns> y{};
-  model_.unknowns(y.data());
+  const std::array<double, max_unknowns> y = model_.coordinates_now();
   double change = 0.0;
   for (std::size_t n = 0; n < model_.indices.count; ++n) {
     // Without springs nothing returns the shaft to any angle.
@@ -137,7 +136,7 @@ void DirectStartUp::give_up(StatusEvidence why) {
 
 TransientResult DirectStartUp::run() {
   model_.begin_piece();
-  model_.unknowns(before_.data());
+  before_ = model_.coordinates_now();
   swing_ = std::abs(now_.moving.angle);
   stroke_before_ = now_.moving.angle;
   recorder_.start(std::abs(now_.moving.current));

@@ -205,9 +205,7 @@ void StartUpRun::end_rows(double start, double angle_0) {
     if (std::abs(rows.back().time - end) > 1e-3 * end) return;
     rows.pop_back();
   }
-  double y[max_unknowns];
-  model_.unknowns(y);
-  take_row(end, y, model_.motion_now(), angle_0);
+  take_row(end, model_.coordinates_now().data(), model_.motion_now(), angle_0);
 }
 
 double StartUpRun::shaken_until() const {

@@ -285,6 +285,12 @@ double TimeModel::least_inertia_now() const {
 
 void TimeModel::unknowns(double* y) const { indices.unknowns(now.moving, y); }
 
+std::array<double, max_unknowns> TimeModel::coordinates_now() const {
+  std::array<double, max_unknowns> y{};
+  indices.unknowns(now.moving, y.data());
+  return y;
+}
+
 void TimeModel::set(double t, const double* y) {
   now.t = t;
   now.moving = indices.coordinates(y);

@@ -75,7 +75,10 @@ class TimeModel {
   bool ended() const { return now.jammed; }
   /// Decides on what branch it goes on.
   void begin_piece();
+  /// All that an integrator has as unknowns; models that integrate more beside it have more.
   void unknowns(double* y) const;
+  /// Of the coordinates alone, 0 behind them.
+  std::array<double, max_unknowns> coordinates_now() const;
   void set(double t, const double* y);
   /// dy/dt and, where asked for, the integrands of `quadratures` behind them. False: not finite.
   bool rates(double t, const double* y, double* dy, bool quadrature) const;
