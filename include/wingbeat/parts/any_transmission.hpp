@@ -34,9 +34,9 @@ struct AnyTransmission {
 /// Calls use(transmission) with the one that it is; a direct drive, which turns no crank, with a slider-crank.
 template <Scalar S, class Use>
 constexpr auto visit(const AnyTransmission<S>& t, const Use& use) {
-#define WINGBEAT_CASE(enumerator, name, Part)                         \
-  case TransmissionType::enumerator:                                  \
-    if constexpr (Transmission<Part<S>, S>) return use(t.enumerator); \
+#define WINGBEAT_CASE(enumerator, name, Part)                                                  \
+  case TransmissionType::enumerator:                                                           \
+    if constexpr (Transmission<Part<S>, S>) return use(t.enumerator); /* NOLINT(bugprone-*) */ \
     break;
   switch (t.type) { WINGBEAT_TRANSMISSIONS(WINGBEAT_CASE) }
 #undef WINGBEAT_CASE
@@ -49,7 +49,7 @@ AnyTransmission<S> transmission_from(const Design& design) {
   AnyTransmission<S> transmission{};
   transmission.type = design.type;
 #define WINGBEAT_CASE(enumerator, name, Part) \
-  case TransmissionType::enumerator: transmission.enumerator = Part<S>::from(design); break;
+  case TransmissionType::enumerator: transmission.enumerator = Part<S>::from(design); break; /* NOLINT(bugprone-*) */
   switch (design.type) { WINGBEAT_TRANSMISSIONS(WINGBEAT_CASE) }
 #undef WINGBEAT_CASE
   return transmission;
@@ -64,7 +64,7 @@ constexpr bool takes_key(TransmissionType type, std::string_view key) {
     return false;
   };
 #define WINGBEAT_CASE(enumerator, name, Part) \
-  case TransmissionType::enumerator: return listed(Part<double>::keys);
+  case TransmissionType::enumerator: return listed(Part<double>::keys); /* NOLINT(bugprone-*) */
   switch (type) { WINGBEAT_TRANSMISSIONS(WINGBEAT_CASE) }
 #undef WINGBEAT_CASE
   return false;
