@@ -3,7 +3,10 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 #include <memory>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "wingbeat/core/math.hpp"
@@ -25,13 +28,16 @@ struct SpanStrips {
 /// The wing has at the distance xR from its root the pitch \f$\psi + x \tau\f$.
 template <Scalar S>
 struct WingTorsion {
+  /// Lanes have no wings that twist.
+  using Strips = std::conditional_t<ScalarTraits<S>::reads_tables, std::shared_ptr<const SpanStrips>, std::nullptr_t>;
+
   S stiffness = S(0);   ///< k_tau of all wings [N m/rad]; 0: they do not twist
   S damping = S(0);     ///< c_tau of all wings [N m s/rad], >= 0
   S length = S(0);      ///< R [m]
   S chord = S(0);       ///< reference chord of the strips [m]
   S hub_offset = S(0);  ///< hinge to root [m]
   S count = S(0);       ///< wings
-  std::shared_ptr<const SpanStrips> strips = {};
+  Strips strips = nullptr;
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
