@@ -45,8 +45,9 @@ StripForce<S> strip_force(const BladeElement<S>& wings, const PitchingWings<S>& 
   using std::cos;
   using std::sin;
   const S phi = atan(S(w / u)), square_of_speed = square(u) + square(w), c = cos(phi), s = sin(phi);
-  const StripCoefficients<S> at = strip_coefficients(wings, hinged, on_hinges, S(alpha + phi));
-  return {square_of_speed * (at.lift * s - at.drag * c), square_of_speed * (at.lift * c + at.drag * s)};
+  const StripCoefficients<S> coefficient = strip_coefficients(wings, hinged, on_hinges, S(alpha + phi));
+  return {square_of_speed * (coefficient.lift * s - coefficient.drag * c),
+          square_of_speed * (coefficient.lift * c + coefficient.drag * s)};
 }
 
 }  // namespace wingbeat
