@@ -7,7 +7,6 @@
 #include <cstdint>
 #include <optional>
 
-#include "fmu/dynamics.hpp"
 #include "time/event_loop.hpp"
 #include "time/time_model.hpp"
 
@@ -226,10 +225,7 @@ inline IntegratorProblem problem_of(const fmu::MeasuredModel& model, const doubl
   p.roots = int(fmu::MeasuredModel::indicator_count);
   p.rates = [&model](double t, const double* y, double* dy) {
     if (--model.work_left < 0) throw fmu::WorkSpent();
-    if (!model.TimeModel::rates(t, y, dy, false)) return false;
-    const auto all = fmu::evaluate<double>(model.vehicle, model.mode(), y, model.voltage(t));
-    for (int k = 0; k < quadrature_count; ++k) dy[model.coupled + k] = all.integrands[std::size_t(quadratures[k])];
-    return true;
+    return model.TimeModel::rates(t, y, dy, true);
   };
   p.root_functions = [&model](double t, const double* y, double* values) {
     const auto indicators = model.indicators(t, y);

@@ -166,13 +166,13 @@ SupplyMoment<double> TimeModel::supply_at(double t) const {
   return {voltage(t), supply.voltage * w * std::cos(w * t)};
 }
 
-FullState<double> TimeModel::instant(double t, const double* y) const {
+FullState<double> TimeModel::instant(double t, const Coordinates<double>& place) const {
   const SupplyMoment<double> moment = supply_at(t);
   Mode<double> here = mode();
   if (!indices.inductive && limits_current(vehicle.electronics)) {
-    here = with_bridge(vehicle, moment.voltage, here.slip < 0.0 ? 0.0 : y[1], here);
+    here = with_bridge(vehicle, moment.voltage, here.slip < 0.0 ? 0.0 : place.speed, here);
   }
-  return instant_at(vehicle, indices.coordinates(y), moment, here);
+  return instant_at(vehicle, place, moment, here);
 }
 
 double TimeModel::current_now() const {
@@ -210,10 +210,10 @@ PitchMotion<double> TimeModel::motion_now() const {
 
 bool TimeModel::rates(double t, const double* y, double* dy, bool quadrature) const {
   Mode<double> mode;
-  const FullState<double> here = instant(t, y);
+  const Coordinates<double> place = indices.coordinates(y);
+  const FullState<double> here = instant(t, place);
   PitchMotion<double> m;
   mode = on_force_branch(vehicle, here, this->mode(), &m);
-  const Coordinates<double> place = indices.coordinates(y);
   indices.unknowns(rates_of(vehicle, place, here, m), dy);
   if (quadrature) {
     const CycleIntegrals<double> all = integrands<double>(m, dy[0], mode);

@@ -115,7 +115,8 @@ class TimeModel {
   double stroke_angle(double angle) const { return stroke_angle_at(vehicle, kinematics(angle), angle); }
   /// What stands still, the direction and the sign of the rod force; no other sign of it means anything.
   Mode<double> mode() const;
-  FullState<double> instant(double t, const double* y) const;
+  FullState<double> instant(double t, const double* y) const { return instant(t, indices.coordinates(y)); }
+  FullState<double> instant(double t, const Coordinates<double>& place) const;
   /// Torque that the actuator gives a shaft that stands [N m].
   double standing_torque(double t, const double* y) const { return wingbeat::standing_torque(vehicle, instant(t, y)); }
   /// What acts at the unknowns y, in the mode `used`.
