@@ -37,7 +37,7 @@ class CrankSearch {
       // Where the pitching is lightly damped, the return map does not forget its start, and several orbits may be
       // stable.
       const double slope = crank_kinematics(vehicle_.transmission, 0.0, 1.0).stroke_slope, slow = balanced_.slowest;
-      if (UnknownIndices(vehicle_).pitching == false) {
+      if (!is_hinged(vehicle_)) {
         orbits.attempt(turning(slow, slow), part);
         if (orbits.empty()) orbits.attempt(turning(no_load_, no_load_), part);
         return;
@@ -108,8 +108,7 @@ class CrankSearch {
   State turning(double speed, double earlier_speed) const {
     const double current =
         current_within(vehicle_.electronics, algebraic_current(vehicle_, vehicle_.voltage, earlier_speed));
-    if constexpr (System::general) return System::state_of({0.0, speed, current}, vehicle_);
-    else return System::state_of({0.0, speed, current});
+    return System::state_of({0.0, speed, current}, vehicle_);
   }
   /// turning() with wings pitched by `psi` [rad] against their velocity.
   State pitched(double speed, double psi) const

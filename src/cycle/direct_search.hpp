@@ -46,7 +46,7 @@ class DirectSearch {
       // Where the pitching is lightly damped, the return map does not forget its start, and several responses may be
       // stable.
       orbits.attempt(State{}, part);
-      const bool hinged = UnknownIndices(vehicle_).pitching;
+      const bool hinged = is_hinged(vehicle_);
       for (const double psi : {0.25 * pi, 0.5 * pi}) {
         if (responds && hinged) orbits.attempt(harmonic(psi), part);
       }
@@ -82,8 +82,8 @@ class DirectSearch {
   State harmonic(double amplitude) const {
     const HarmonicResponse& r = balance_.responses.front();
     const std::complex<double> psi = -amplitude * r.speed / std::abs(r.speed);
-    return System::state_of(
-        {r.stroke.imag(), r.speed.imag(), r.current.imag(), psi.imag(), (std::complex<double>(0.0, w_) * psi).imag()});
+    const std::complex<double> psi_rate = std::complex<double>(0.0, w_) * psi;
+    return System::state_of({r.stroke.imag(), r.speed.imag(), r.current.imag(), psi.imag(), psi_rate.imag()}, vehicle_);
   }
 
   const Vehicle<double>& vehicle_;

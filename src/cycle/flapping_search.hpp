@@ -16,13 +16,11 @@ namespace wingbeat::detail {
 /// Typical sizes of a system's states; 1 of what the vehicle does not have.
 template <class System>
 typename System::State sizes_of_states(const Vehicle<double>& vehicle, const Coordinates<double>& typical) {
+  typename System::State sizes = System::state_of(typical, vehicle);
   if constexpr (System::general) {
-    typename System::State sizes = System::state_of(typical, vehicle);
     for (double& size : sizes) size = size > 0.0 ? size : 1.0;
-    return sizes;
-  } else {
-    return System::state_of(typical);
   }
+  return sizes;
 }
 
 /// The stable orbits of a vehicle that searches have found so far, and what they have found beside.
@@ -162,8 +160,7 @@ SteadyFlapping search_flapping(const Vehicle<double>& vehicle, const SteadyOptio
     }
     std::optional<std::size_t> which;
     if (outcome.settled) {
-      if constexpr (System::general) which = orbits.reached_at(System::state_of(outcome.state, vehicle));
-      else which = orbits.reached_at(System::state_of(outcome.state));
+      which = orbits.reached_at(System::state_of(outcome.state, vehicle));
     }
     result.summary = orbits.last();
     if (!which) {

@@ -14,6 +14,7 @@
 #include "wingbeat/cycle/cycle_layout.hpp"
 #include "wingbeat/cycle/electronics_events.hpp"
 #include "wingbeat/cycle/energy_balance.hpp"
+#include "wingbeat/cycle/event_crossing.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/cycle/pitch_stops.hpp"
 #include "wingbeat/cycle/shaft_rest.hpp"
@@ -114,21 +115,17 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
     return relative_energy_gap(vehicle, totals);
   }
 
-  /// The state where everything is like this; of a general system without the tip of a piezo.
-  static State state_of(const Coordinates<S>& c) {
+  /// The state of a vehicle of which everything is like this.
+  static State state_of(const Coordinates<S>& c, [[maybe_unused]] const Vehicle<S>& v) {
     State y{};
     if constexpr (!turns) y[0] = c.angle;
     y[shaft] = c.speed;
-    for_groups([&](StateGroup, std::size_t place, const GroupState<S>& state) { y[place] = c.*state.number; });
-    return y;
-  }
-  static State state_of(const Coordinates<S>& c, const Vehicle<S>& v)
-    requires(features_.general)
-  {
-    State y = state_of(c);
-    if (!has_current_state(v)) y[current_state] = S(0.0);
-    if constexpr (!turns) y[tip + 1] = S(0.0);
-    if (is_compliant(v.piezo)) y[tip] = c.tip, y[tip + 1] = c.tip_velocity;
+    for_groups([&](StateGroup group, std::size_t place, const GroupState<S>& state) {
+      if (!general || has_states(v, group)) y[place] = c.*state.number;
+    });
+    if constexpr (general && !turns) {
+      if (is_compliant(v.piezo)) y[tip] = c.tip, y[tip + 1] = c.tip_velocity;
+    }
     return y;
   }
   /// How everything is in a state; what the vehicle does not have is 0.
@@ -259,7 +256,7 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
       const bool stuck = value_of(to[slip]) < 0.0;
       const bool came_to_rest =
           value_of(from[slip]) > 0.0 && (stuck || value_of(from[velocity]) != value_of(to[velocity]));
-      if (came_to_rest) pitch_stops::cross_at_zero<quadratures>(system, x, y, shaft, S(y[shaft]), from, to, totals);
+      if (came_to_rest) detail::cross_at_zero<quadratures>(system, x, y, shaft, S(y[shaft]), from, to, totals);
       if (stuck) y[shaft] = S(0.0);
     }
   }

@@ -3,7 +3,10 @@
 // follows the voltage, what is left, of either sign.
 #pragma once
 
-#include "wingbeat/cycle/pitch_stops.hpp"
+#include <cmath>
+
+#include "wingbeat/cycle/event_crossing.hpp"
+#include "wingbeat/vehicle/dynamics.hpp"
 
 namespace wingbeat::electronics_events {
 
@@ -76,7 +79,7 @@ void reset_map(const System& system, const typename System::Real& x, typename Sy
   const auto hold_at = [&](std::size_t sign, const S& held_current) {
     if (value_of(to[sign]) > 0.0) return;
     if (value_of(from[sign]) > 0.0) {
-      pitch_stops::cross_at_zero<quadratures>(system, x, y, i, S(y[i] - held_current), from, to, totals);
+      detail::cross_at_zero<quadratures>(system, x, y, i, S(y[i] - held_current), from, to, totals);
     }
     y[i] = held_current;
   };

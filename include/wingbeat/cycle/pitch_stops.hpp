@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+#include "wingbeat/cycle/event_crossing.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/solve/iterate_record.hpp"
 #include "wingbeat/vehicle/impact.hpp"
@@ -108,22 +109,6 @@ bool has_impact(const typename System::Signs& from, const typename System::Signs
   return value_of(from[System::impacts]) != value_of(to[System::impacts]);
 }
 
-/// A solution next to a recorded one of which state n came to zero at x, where its rates jump: it does so a little
-/// earlier or later.
-template <bool quadratures, class System>
-void cross_at_zero(const System& system, const typename System::Real& x, typename System::State& y, std::size_t n,
-                   const typename System::Real& off, const typename System::Signs& from,
-                   const typename System::Signs& to, typename System::Quadrature* totals) {
-  const auto before = system.template rates<quadratures>(x, y, from);
-  const auto late = -off / before.dy[n];
-  const auto after = system.template rates<quadratures>(x, y, to);
-  for (std::size_t k = 0; k < y.size(); ++k) y[k] = y[k] + (before.dy[k] - after.dy[k]) * late;
-  if constexpr (quadratures) {
-    for (std::size_t q = 0; q < before.dq.size(); ++q)
-      (*totals)[q] = (*totals)[q] + (before.dq[q] - after.dq[q]) * late;
-  }
-}
-
 /// A solution next to a recorded one that met a stop, or whose wings friction brought to rest, at x.
 template <bool quadratures, class System>
 void reset_map(const System& system, const typename System::Real& x, typename System::State& y,
@@ -148,7 +133,8 @@ void reset_map(const System& system, const typename System::Real& x, typename Sy
   const bool holds = is_held<System>(to), held_before = is_held<System>(from);
   const bool turned = has_friction(hinge) && !held_before && !has_impact<System>(from, to) &&
                       (holds || value_of(from[System::turn]) != value_of(to[System::turn]));
-  if (turned) cross_at_zero<quadratures>(system, x, y, System::pitch + 1, S(y[System::pitch + 1]), from, to, totals);
+  if (turned)
+    detail::cross_at_zero<quadratures>(system, x, y, System::pitch + 1, S(y[System::pitch + 1]), from, to, totals);
   if (!holds) return;
   if (is_at_stop<S>(hinge, y[System::pitch])) y[System::pitch] = side<System>(y) * hinge.stop;
   y[System::pitch + 1] = S(0.0);

@@ -26,7 +26,7 @@ AtRest<typename System::Real> at_rest(const System& system, const typename Syste
   if constexpr (System::on_hinges) {
     if (!System::general || pitches(v)) moment = moment + wings_standing(v, here, System::mode(signs)).moment;
   }
-  return {v.motor.torque_constant * here.current - actuator_load(here),
+  return {standing_torque(v, here),
           standing_torques(v, here.configuration.kinematics, static_rod_force(here.configuration.kinematics, moment))};
 }
 

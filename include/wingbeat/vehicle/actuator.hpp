@@ -104,10 +104,22 @@ struct FullState : MotionState<S> {
   TwistState<S> twist;
 };
 
-/// Torque on the shaft at rest that the actuator gives [N m].
-template <Scalar S>
-S standing_torque(const Vehicle<S>& v, const FullState<S>& instant) {
-  return v.motor.torque_constant * instant.current - instant.load;
+/// What the actuator takes from a shaft beside K i, of either kind of instant [N m].
+template <class State>
+auto actuator_load(const State& instant) {
+  if constexpr (requires { instant.load; }) return instant.load;
+  else return decltype(instant.omega)(0.0);
+}
+template <class State>
+auto damped_speed(const State& instant) {
+  if constexpr (requires { instant.damped_speed; }) return instant.damped_speed;
+  else return instant.omega;
+}
+
+/// Torque on the shaft at rest that the actuator gives [N m], of either kind of instant.
+template <Scalar S, class State>
+S standing_torque(const Vehicle<S>& v, const State& instant) {
+  return v.motor.torque_constant * instant.current - actuator_load(instant);
 }
 
 /// Energy of the piezo's mass and springs beyond that of v.motor's inertia [J].

@@ -68,18 +68,6 @@ void stand_still(const V<S>& v, const S& wing_moment, Motion<S>& m, const S& spr
 
 }  // namespace detail
 
-/// What the actuator takes from a shaft beside K i, of either kind of instant [N m].
-template <class State>
-auto actuator_load(const State& instant) {
-  if constexpr (requires { instant.load; }) return instant.load;
-  else return decltype(instant.omega)(0.0);
-}
-template <class State>
-auto damped_speed(const State& instant) {
-  if constexpr (requires { instant.damped_speed; }) return instant.damped_speed;
-  else return instant.omega;
-}
-
 /// What acts at an instant on wings that pitch on hinges or twist, in a given mode. Of the loads of the air the pitch
 /// margin means nothing. State: MotionState of wings that do not twist, or FullState.
 template <template <Scalar> class V, Scalar S, class State>

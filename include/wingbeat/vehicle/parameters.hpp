@@ -52,8 +52,8 @@ struct Parameter : ParameterText {
   std::string (*text)(const Design<S>&) = nullptr;
 };
 
-/// Every parameter, in the order of the reference. Its rows are in src/vehicle/parameter_rows.hpp; there are tables of
-/// double and of GradientJet (cycle/orbit_gradient.hpp).
+/// Every parameter, in the order of the reference. Its rows are in src/vehicle/drive_rows.hpp and parameter_rows.hpp;
+/// there are tables of double and of GradientJet (cycle/orbit_gradient.hpp).
 template <Scalar S>
 std::span<const Parameter<S>> parameter_table();
 

@@ -256,7 +256,7 @@ class MotorSection(Section):
 class ElectronicsSection(Section):
     @property
     def efficiency(self) -> Quantity | None:
-        """eta_esc of a brushless motor's electronics, input over what the motor takes; given, no current flows back into the supply.
+        """eta_esc of a brushless motor's electronics, what the motor takes over what the supply gives; given, no current flows back into the supply.
         Number. Range: > 0, <= 1. Default: none: no electronics.
         """
     @property
