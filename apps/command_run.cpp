@@ -40,8 +40,9 @@ std::optional<OutputFile> reserved(const char* option, const std::string& path, 
 }
 
 std::string case_title(const Design<double>& design, const RunResult& result, Condition condition) {
-  std::string title = fmt::format("{}, {}", readable(result.metrics[Metric::voltage], "V"),
-                                  readable(result.metrics[Metric::frequency], "Hz"));
+  std::string voltage = readable(result.metrics[Metric::voltage], "V");
+  if (design.supply.offset != 0.0) voltage += fmt::format(" about {}", readable(design.supply.offset, "V"));
+  std::string title = fmt::format("{}, {}", voltage, readable(result.metrics[Metric::frequency], "Hz"));
   if (condition != Condition::air) title += fmt::format(", {}", name_of(condition));
   if (is_sine(design.supply.type)) title = fmt::format("sine supply, {}", title);
   if (result.domain.any()) title += fmt::format("; OUTSIDE THE DOMAIN ({})", name_of(result.domain));

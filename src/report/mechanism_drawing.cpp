@@ -54,7 +54,8 @@ void add_guides(MechanismSketch& sketch, const AnyTransmission<double>& t) {
   }
 }
 
-void add_names(MechanismSketch& sketch, const AnyTransmission<double>& t, const MechanismPose& pose) {
+void add_names(MechanismSketch& sketch, const Vehicle<double>& vehicle, const MechanismPose& pose) {
+  const AnyTransmission<double>& t = vehicle.transmission;
   const double j = joint_radius(t);
   const PlanePoint tip = pose.at("tip");
   if (t.type == TransmissionType::slider_crank) {
@@ -73,7 +74,7 @@ void add_names(MechanismSketch& sketch, const AnyTransmission<double>& t, const 
     sketch.name(f.stroke_ratio == 1.0 ? "wing" : fmt::format("wing, {:.3g} x rocker", f.stroke_ratio),
                 {tip.x + 1.5 * j, tip.y}, "left");
   } else {
-    sketch.name("motor", {-5.2 * j, 0.0}, "right");
+    sketch.name(is_given(vehicle.piezo) ? "piezo" : "motor", {-5.2 * j, 0.0}, "right");
     sketch.name("wing", {tip.x + 1.5 * j, tip.y}, "left");
   }
 }
@@ -239,7 +240,9 @@ std::string mechanism_caption(const Vehicle<double>& vehicle) {
     case TransmissionType::tabulated:
       return fmt::format("tabulated: stroke over crank angle (deg); reaction at {:.4g} mm",
                          mm * t.tabulated.reference_radius);
-    case TransmissionType::direct: return "direct drive: the motor's shaft is the wing hinge";
+    case TransmissionType::direct:
+      return is_given(vehicle.piezo) ? "piezo: its tip swings the wing through a flexure transmission"
+                                     : "direct drive: the motor's shaft is the wing hinge";
     default: return name_of(t.type);
   }
 }
@@ -252,7 +255,7 @@ void draw_mechanism_panel(Figure& figure, const Vehicle<double>& vehicle, const 
   const MechanismPose pose = t.type == TransmissionType::direct ? pose_of(t, 0.0, 0.6 * stroke.high, wing)
                                                                 : pose_of(t, drawn_crank_angle, wing);
   MechanismSketch sketch = mechanism_sketch(t, vehicle.spring.stiffness > 0.0, pose, &stroke);
-  add_names(sketch, t, pose);
+  add_names(sketch, vehicle, pose);
   sketch.draw(figure, place);
 }
 

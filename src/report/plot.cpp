@@ -156,7 +156,8 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
               fmt::format("screen {},{} center", 0.5 * (left + right), 0.0763 / page_height));
   const std::string air = style::stroke(style::aerodynamic);
   figure.key_entry(left, key_height, style::first_curve, "electrical");
-  figure.key_entry(left + 0.205, key_height, style::second_curve, "motor output");
+  figure.key_entry(left + 0.205, key_height, style::second_curve,
+                   is_given(vehicle.piezo) ? "piezo output" : "motor output");
   figure.key_entry(left + 0.465, key_height, air, "aerodynamic");
   figure.add("plot $cycle using 1:6 with lines {}, '' using 1:7 with lines {}, '' using 1:8 with lines {}\n",
              style::first_curve, style::second_curve, air);

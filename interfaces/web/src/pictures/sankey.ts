@@ -28,11 +28,13 @@ function network(b: Balance): {nodes: Place[]; links: Flow[]} {
     links.push({source, target, value, kind});
   const supply = add('supply', 'input'),
     motor = add('motor', 'station');
-  flow(supply, motor, b.electrical, 'useful');
+  if (b.electronics > least) flow(supply, add('electronics', 'loss'), b.electronics, 'electronics');
+  const taken = b.electrical - Math.max(b.electronics, 0);
+  flow(supply, motor, taken, 'useful');
   if (b.copper > least) flow(motor, add('copper loss', 'loss'), b.copper, 'copper');
   if (b.viscous > least) flow(motor, add('motor viscous loss', 'loss'), b.viscous, 'viscous');
   if (b.motor_friction > least) flow(motor, add('motor friction', 'loss'), b.motor_friction, 'friction');
-  const onward = b.electrical - Math.max(b.copper, 0) - Math.max(b.viscous, 0) - Math.max(b.motor_friction, 0);
+  const onward = taken - Math.max(b.copper, 0) - Math.max(b.viscous, 0) - Math.max(b.motor_friction, 0);
   if (!(onward > least)) return {nodes, links};
   const mechanism = add('mechanism', 'station');
   flow(motor, mechanism, onward, 'useful');
@@ -104,6 +106,7 @@ const stationPlace = (x0: number, x1: number, width: number): Record<string, str
 export function balanceRows(b: Balance): [string, number, number][] {
   const rows: [string, number][] = [
     ['electrical input', b.electrical],
+    ['electronics', b.electronics],
     ['copper loss', b.copper],
     ['motor viscous loss', b.viscous],
     ['motor friction', b.motor_friction],
