@@ -182,8 +182,7 @@ constexpr auto drive_rows() {
 
       number<S, Motorised>(row(electronics_key::efficiency, "none: no electronics",
                                "eta_esc of a brushless motor's electronics, what the motor takes over what the supply "
-                               "gives; given, no current flows back into the supply",
-                               {}, "0.9"),
+                               "gives; given, no current flows back into the supply"),
                            [](auto& d) -> auto& { return d.electronics.efficiency; }),
       number<S, Brushless>(
           row(electronics_key::current_max, "none", "i_max to which they limit the current of one motor"),
