@@ -36,7 +36,8 @@ class StableOrbits {
 
   /// Searches from a state; keeps the orbit found if it is stable and none that is known. It may take so many
   /// evaluations: one start may not take what is left for the others.
-  void attempt(const State& guess, long max_evaluations = all, double expected_multiplier = 1.0) {
+  void attempt(State guess, long max_evaluations = all, double expected_multiplier = 1.0) {
+    if (System::on_hinges && leads_to_known(guess)) return;
     keep(guess, max_evaluations, [&](auto& orbit) { return orbit.search(guess, expected_multiplier); });
   }
   void attempt_near(const State& guess, long max_evaluations = all) {
@@ -49,6 +50,16 @@ class StableOrbits {
     if (!which) attempt_near(settled), which = nearest_to(settled);
     if (!which && !System::on_hinges) attempt(settled), which = nearest_to(settled);
     return which;
+  }
+
+  /// Which of them a drive whose cycle is the supply's comes to from rest: iterates from there are its start-up.
+  /// Nothing where they come to none within a few hundred.
+  std::optional<std::size_t> reached_from_rest()
+    requires(!System::turns)
+  {
+    constexpr double accuracy = 1e-6;
+    State here{};
+    return plain_iterates(here, accuracy, 300);
   }
 
   bool empty() const { return orbits_.empty(); }
@@ -87,15 +98,49 @@ class StableOrbits {
       unfinished_ = orbit.start();
     }
     if (!found) return;
-    if (springs_return() && !(orbit.multiplier() < 1.0)) {
+    const bool held = holds_wings(orbit);
+    if (springs_return() && !held && !(orbit.multiplier() < 1.0)) {
       unstable_multiplier_ = orbit.multiplier();
       unstable_frequency_ = orbit.frequency();
       return;
     }
-    for (const OrbitSearch<System>& known : orbits_) {
+    for (OrbitSearch<System>& known : orbits_) {
+      if (held && holds_wings(known)) return;
       if (apart(known.start(), orbit.start(), springs_return() ? 0 : 1) < same) return;
     }
     orbits_.push_back(std::move(orbit));
+  }
+
+  /// Whether friction of the pitch hinge holds the wings all the time: they stay at any pitch within its reach, at a
+  /// multiplier of 1, and the orbits of all these are one.
+  bool holds_wings(OrbitSearch<System>& orbit) const {
+    if constexpr (!System::on_hinges) return false;
+    else return has_friction(system_.vehicle.pitch.hinge) && std::abs(orbit.multiplier() - 1.0) < 1e-9;
+  }
+
+  /// Whether plain iterates from a state come to a stable orbit that is known, at less work than to find it once more;
+  /// moves the state along them.
+  bool leads_to_known(State& y) {
+    constexpr double accuracy = 1e-3;
+    return !orbits_.empty() && springs_return() && plain_iterates(y, accuracy, 8);
+  }
+
+  /// Moves a state along at most so many iterates, until it is close to one of the orbits: which.
+  std::optional<std::size_t> plain_iterates(State& y, double accuracy, int max_iterates) {
+    const solver::IterateOptions options{.tolerance = accuracy, .max_steps = 2000};
+    solver::Iterate<System> iterate;
+    State here = y;
+    for (int n = 0; n < max_iterates && !shared_.work.spent() && system_.admissible(here); ++n) {
+      solver::run_iterate<false>(system_, here, options, iterate);
+      shared_.work.used += long(iterate.steps.size());
+      ++iterates_;
+      if (iterate.status != solver::IterateStatus::complete) return std::nullopt;
+      here = iterate.end;
+      const std::optional<std::size_t> which = nearest_to(here);
+      if (which) return which;
+    }
+    y = here;
+    return std::nullopt;
   }
 
   std::optional<std::size_t> nearest_to(const State& settled) const {
@@ -147,7 +192,12 @@ SteadyFlapping search_flapping(const Vehicle<double>& vehicle, const SteadyOptio
 
   std::size_t chosen = 0;
   const auto unresolved = [&] { return orbits.size() != 1 || drive.in_doubt(orbits) || orbits[0].over_rotates(); };
-  if (start_up && unresolved()) {
+  std::optional<std::size_t> from_rest;
+  if constexpr (System::on_hinges && !System::turns) {
+    if (start_up && !orbits.empty() && unresolved()) from_rest = orbits.reached_from_rest();
+    if (from_rest) chosen = *from_rest;
+  }
+  if (start_up && !from_rest && unresolved()) {
     const StartUpOutcome outcome = start_up(vehicle);
     if (outcome.status != FlappingStatus::flapping) {
       result.status = outcome.status;

@@ -57,5 +57,50 @@ TEST(Floquet, StepsBeyondStabilityDoNotGrow) {
   EXPECT_LT(monodromy_product(system, system.template cast<Jet<1>>(), iterate).spectral_radius(), 1e-6);
 }
 
+/// Two oscillators whose velocities are in a unit so small that the rates' derivatives are large numbers, although
+/// nothing moves quickly.
+template <class S>
+struct OddUnits : TestSystem<S, 4> {
+  using Base = TestSystem<S, 4>;
+  static constexpr double unit = 1e-4;
+  static constexpr std::array<double, 2> damping = {0.3, 0.8}, stiffness = {2.0, 5.0};
+  static inline int evaluations = 0;
+
+  template <class T>
+  OddUnits<T> cast() const {
+    return {};
+  }
+  typename Base::State error_scale(const typename Base::State&) const {
+    return {S(1.0), S(1.0 / unit), S(1.0), S(1.0 / unit)};
+  }
+  template <bool quadratures>
+  Rates<OddUnits> rates(const S& x, const typename Base::State& y, const typename Base::Signs&) const {
+    using std::cos;
+    ++evaluations;
+    Rates<OddUnits> r;
+    for (std::size_t n = 0; n < 2; ++n) {
+      const S velocity = S(unit) * y[2 * n + 1];
+      r.dy[2 * n] = velocity;
+      r.dy[2 * n + 1] = (cos(x) - S(damping[n]) * velocity - S(stiffness[n]) * y[2 * n]) * S(1.0 / unit);
+    }
+    r.switches[0] = S(1.0);
+    if constexpr (quadratures) r.dq[0] = S(1.0);
+    return r;
+  }
+};
+
+// The steps' own derivatives do: nothing needs to be solved along them.
+TEST(Floquet, StepsThatResolveTheFlowAreKnownInAnyUnits) {
+  const OddUnits<double> system;
+  Iterate<OddUnits<double>> iterate;
+  run_iterate<false>(system, {0.1, 0.0, -0.2, 0.0}, {.tolerance = 1e-11}, iterate);
+  ASSERT_EQ(iterate.status, IterateStatus::complete);
+  const double multiplier = std::exp(-0.5 * OddUnits<double>::damping[0] * two_pi);
+  OddUnits<double>::evaluations = 0;
+  EXPECT_NEAR(monodromy_product(system, system.cast<Jet<4>>(), iterate).spectral_radius(), multiplier,
+              1e-10 * multiplier);
+  EXPECT_EQ(OddUnits<double>::evaluations, 0);
+}
+
 }  // namespace
 }  // namespace wingbeat::solver

@@ -110,6 +110,21 @@ TEST(SoftWings, GradientsAreThoseOfDifferences) {
 
 // A wing in vacuum beside a stroke that friction holds: its pitching decays by 4 T_psi / k_psi a period, and it stops
 // where less than T_psi / k_psi is left.
+// Any pitch within its reach is an orbit's; the one from rest is found, and no second one.
+TEST(SoftWings, FrictionThatHoldsTheWings) {
+  Design<double> d = hinged_design(4e-4);
+  d.pitch.friction = 2.0 * *d.pitch.stiffness;
+  for (const double tolerance : {1e-6, 1e-8, 1e-10}) {
+    const SteadyFlapping orbit = find_steady_flapping(resolve(d), {.tolerance = tolerance});
+    ASSERT_EQ(orbit.status, FlappingStatus::flapping) << describe(orbit.evidence);
+    EXPECT_NEAR(orbit.summary.floquet_multiplier_max, 1.0, 1e-9);
+    EXPECT_EQ(orbit.metrics[Metric::pitch_amplitude], 0.0);
+    EXPECT_NEAR(orbit.metrics[Metric::lift_peak], 0.0, 1e-12);
+    EXPECT_TRUE(std::isnan(orbit.metrics[Metric::lift_added_mass_share]));
+    EXPECT_TRUE(std::isnan(orbit.evidence.other_amplitude));
+  }
+}
+
 TEST(SoftWings, FrictionStopsAFreeHinge) {
   Design<double> d = hinged_design(4e-4);
   d.pitch.friction = 4e-6;

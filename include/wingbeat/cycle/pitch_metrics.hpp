@@ -52,7 +52,8 @@ inline void set_pitch_metrics(const PitchMetrics& pitching, const PitchingWings<
   m[Metric::pitch_amplitude] = degrees_per_radian * pitching.amplitude;
   m[Metric::pitch_phase] = pitching.stands_still() ? absent : degrees_per_radian * pitching.phase;
   m[Metric::power_hinge] = pitching.hinge_power;
-  m[Metric::lift_added_mass_share] = added_mass_share(p, pitching.chordwise, m[Metric::lift_mean]);
+  m[Metric::lift_added_mass_share] =
+      pitching.stands_still() ? absent : added_mass_share(p, pitching.chordwise, m[Metric::lift_mean]);
 }
 
 namespace detail {
