@@ -13,6 +13,7 @@
 #include "wingbeat/cycle/static_balance.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/ensemble/direct_pack_blocks.hpp"
+#include "wingbeat/ensemble/lane_mechanism.hpp"
 #include "wingbeat/ensemble/lane_statics.hpp"
 #include "wingbeat/ensemble/pack_blocks.hpp"
 #include "wingbeat/ensemble/pack_tables.hpp"
@@ -40,13 +41,16 @@ PackSolver solver_for(InstructionSet isa) {
 
 /// Whether the batched solver knows all of a vehicle.
 bool suits_packs(const Vehicle<double>& v) {
-  if (has_gear_loss(v.motor) || pitches(v) || is_of_further_kind(v)) return false;
+  if (pitches(v) || is_of_further_kind(v)) return false;
   if (v.load_torque != 0.0 || v.voltage_offset != 0.0 || v.electronics.efficiency != 1.0) return false;
-  if (v.transmission.type == TransmissionType::slider_crank) return lanes_know_coefficients(v);
+  if (v.transmission.type != TransmissionType::direct) {
+    // Of two kinds of kinks beside those of the rod force lanes know one at a time.
+    const bool kinks = v.wings.coefficients.table || has_pitch_stop(v.wings);
+    return lanes_know_coefficients(v) && !(kinks && has_gear_loss(v.motor)) && has_half_turns(v.transmission);
+  }
   // Where constant friction holds a shaft that swings, the equations jump; where coefficients have kinks, their slopes
   // jump.
-  return v.transmission.type == TransmissionType::direct && !jumps_at_rest(v) && !v.wings.coefficients.table &&
-         !has_pitch_stop(v.wings);
+  return !jumps_at_rest(v) && !v.wings.coefficients.table && !has_pitch_stop(v.wings);
 }
 
 /// Whether a crank can jam, or lock where the angles that lanes look at do not show it: statics tell it of any angle.
@@ -66,12 +70,15 @@ void keep_wanted(const MetricSet& wanted, Metrics<double>& metrics) {
   }
 }
 
-enum class Coefficients { waves, with_stop, table };
+/// Of the rates, beside those at sign changes of the rod force. Linkages' shorter waves ask for as much as few do.
+enum class Kinks { none, few, knots };
 
 /// What the cranks of a block have in common.
 struct PackKind {
   bool stiff;
-  Coefficients coefficients;
+  TransmissionType transmission;
+  Kinks kinks;
+  bool gear_loss, load_free_friction, coefficient_table, pitch_stop;
   bool added_mass, virtual_work, springs;
   PackCurrent current;
 
@@ -110,11 +117,11 @@ PackSettings settings_for(const PackKind& kind, PackSettings settings) {
   }
   // A rough first trajectory misses the sign changes that the attempt before has found.
   if (kind.stiff && settings.approach == PackApproach::resume) settings.follow_switches = true;
-  settings.follow_switches = settings.follow_switches || (kind.coefficients != Coefficients::waves &&
-                                                          settings.wanted[std::size_t(Quantity::force)]);
-  if (kind.coefficients == Coefficients::with_stop) {
+  settings.follow_switches = settings.follow_switches || kind.gear_loss ||
+                             (kind.kinks != Kinks::none && settings.wanted[std::size_t(Quantity::force)]);
+  if (kind.kinks == Kinks::few) {
     settings.segments = std::min(settings.segments + 2, max_half_segments);
-  } else if (kind.coefficients == Coefficients::table) {
+  } else if (kind.kinks == Kinks::knots) {
     settings.segments = max_half_segments;
     const int more = settings.approach == PackApproach::resume ? 6 : 2;
     settings.intervals = std::min(settings.intervals + more, solver::max_collocation_intervals);
@@ -168,10 +175,17 @@ class EnsembleRun {
  private:
   PackKind kind_of(const Vehicle<double>& v) const {
     const PackCurrent current = current_of(v);
+    const bool table = bool(v.wings.coefficients.table), stop = has_pitch_stop(v.wings);
+    const bool of_linkage = v.transmission.type != TransmissionType::slider_crank, loses = has_gear_loss(v.motor);
     return {.stiff = is_stiff(v, current),
-            .coefficients = v.wings.coefficients.table ? Coefficients::table
-                            : has_pitch_stop(v.wings)  ? Coefficients::with_stop
-                                                       : Coefficients::waves,
+            .transmission = v.transmission.type,
+            .kinks = table                         ? Kinks::knots
+                     : stop || loses || of_linkage ? Kinks::few
+                                                   : Kinks::none,
+            .gear_loss = loses,
+            .load_free_friction = v.friction.torque > 0.0 || v.friction.damping > 0.0,
+            .coefficient_table = table,
+            .pitch_stop = stop,
             .added_mass = v.wings.added_inertia > 0.0,
             .virtual_work = v.transmission.slider_crank.formulation == Formulation::virtual_work,
             .springs = v.spring.stiffness > 0.0,

@@ -307,11 +307,11 @@ TEST(Ensemble, ReportsTheMetricsAskedForAlone) {
   EnsembleOptions options;
   options.metrics.reset();
   for (const Metric m : {Metric::lift_mean, Metric::rod_force_peak}) options.metrics.set(std::size_t(m));
-  Design<double> with_gear = reference_design();
-  with_gear.motor.gear_efficiency = 0.8;
-  const auto outcomes = solve({member_of(reference_design()), member_of(with_gear)}, options);
+  EnsembleMember loaded = member_of(reference_design());
+  loaded.vehicle.load_torque = 2e-5;
+  const auto outcomes = solve({member_of(reference_design()), loaded}, options);
   EXPECT_FALSE(outcomes[0].scalar);
-  EXPECT_TRUE(outcomes[1].scalar) << "lanes know no gear efficiency";
+  EXPECT_TRUE(outcomes[1].scalar) << "lanes know no load torque";
   for (const EnsembleOutcome& out : outcomes) {
     for (int k = 0; k < metric_count; ++k) {
       EXPECT_EQ(std::isnan(out.metrics.values[std::size_t(k)]), !options.metrics[std::size_t(k)]) << k;

@@ -54,7 +54,11 @@ TEST(EnsembleKinds, EveryOneAgreesWithTheScalarSolver) {
   for (const auto& [box, scalars] : {std::pair{KindBox::tables, 3},
                                      {KindBox::pitch_stop, 4},
                                      {KindBox::small_inductance, 3},
-                                     {KindBox::battery, 3}}) {
+                                     {KindBox::battery, 3},
+                                     {KindBox::four_bar, 15},
+                                     {KindBox::tabulated, 3},
+                                     {KindBox::gear_loss, 6},
+                                     {KindBox::heat, 3}}) {
     const ByBoth found = by_both(box, many_members / 80);
     const auto [flapping, by_packs, outside] = agreement(found.batched, found.scalar, 1e-6, 10.0, true);
     const std::string_view name = kind_box_names[std::size_t(box)];

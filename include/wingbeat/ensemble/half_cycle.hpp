@@ -6,6 +6,7 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/pack.hpp"
 #include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/ensemble/lane_mechanism.hpp"
 #include "wingbeat/solve/explicit_step.hpp"
 #include "wingbeat/vehicle/motion.hpp"
 
@@ -14,9 +15,9 @@ namespace wingbeat {
 /// Integrals over the cycle. The others follow: the supply's work from the current, the motor's from what it drives,
 /// the reactive work from the extremes of the stored energy.
 inline constexpr std::array pack_integrals = {
-    Integral::time,          Integral::current,       Integral::current_square,
-    Integral::speed_square,  Integral::friction_work, Integral::aero_work,
-    Integral::residual_work, Integral::lift,          Integral::rod_force};
+    Integral::time,          Integral::current,   Integral::current_square, Integral::speed_square,
+    Integral::friction_work, Integral::aero_work, Integral::residual_work,  Integral::lift,
+    Integral::rod_force,     Integral::gear_work};
 
 /// Where an integral stands among pack_integrals.
 constexpr std::size_t pack_integral(Integral which) {
@@ -25,7 +26,8 @@ constexpr std::size_t pack_integral(Integral which) {
   return index;
 }
 
-/// The crank over half a cycle as a system for solve/: the independent variable u runs from -pi/2 to pi/2.
+/// The crank over half a cycle, one stroke from reversal to reversal, as a system for solve/: the independent variable
+/// u is the crank angle from the middle of the stroke.
 template <Scalar S, int N>
 struct HalfCycle {
   using Real = S;
@@ -37,13 +39,15 @@ struct HalfCycle {
       pack_integral(Integral::lift)};
 
   const Vehicle<S>& vehicle;
-  CrankGeometry<S> geometry;
-  S per_inductance;    ///< 1 / L_a [1/H]
-  S per_resistance;    ///< 1 / (R_a + R_i) [1/ohm]
-  S half;              ///< +1: crank angle u, stroke upward; -1: crank angle pi + u, stroke downward
-  bool has_every_law;  ///< whether added mass, coefficient tables or stops of the pitching count: see aero_loads()
+  const LaneMechanism<S>& mechanism;
+  S per_inductance;           ///< 1 / L_a [1/H]
+  S per_resistance;           ///< 1 / (R_a + R_i) [1/ohm]
+  S half;                     ///< sign of the stroke velocity: +1 of the upward stroke, -1 of the downward one
+  S middle;                   ///< crank angle where u = 0 [rad]; of slider-cranks 0 upward, pi downward
+  bool has_every_law;         ///< whether gear losses, added mass, coefficient tables or stops of the pitching count
   S inductive_drop = S(0.0);  ///< N = 1: L_a di/dt [V], which a small inductance takes from the voltage
   S pitching = S(1.0);        ///< as in Mode
+  S gear = S(1.0);            ///< as in Mode
 
   S current(const State& y) const {
     if constexpr (N == 2) {
@@ -54,12 +58,13 @@ struct HalfCycle {
   }
 
   Configuration<S> configuration(const S& u) const {
+    if (!mechanism.is_slider_crank) return configuration_of(mechanism.kinematics(S(middle + u)));
     const SineCosine<S> of_u = sine_cosine_of_reduced(u);
-    return configuration_of(crank_kinematics(geometry, S(half * of_u.sine), S(half * of_u.cosine)));
+    return configuration_of(crank_kinematics(mechanism.slider, S(half * of_u.sine), S(half * of_u.cosine)));
   }
   Configuration<S> configuration_of(const CrankKinematics<S>& k) const { return {k, spring_moment(vehicle, k)}; }
 
-  Mode<S> mode(const S& force) const { return {half, force, S(1.0), S(1.0), pitching}; }
+  Mode<S> mode(const S& force) const { return {half, force, S(1.0), S(1.0), pitching, gear}; }
 
   /// pitch_margin() of the wings [rad].
   S pitch_margin_at(const Configuration<S>& configuration, const State& y) const {
@@ -70,34 +75,60 @@ struct HalfCycle {
     return has_every_law ? motion_by_every_law(configuration, y, force) : motion_of<false>(configuration, y, force);
   }
 
+  /// What changes sign where the equations have a kink beside that of the rod force: pitch_margin_at() or, where a
+  /// gearbox loses torque, that torque. Without friction but that of the rod force it is F (h + s mu r_e) behind the
+  /// gearbox: its sign changes with that of F, where there is a kink already, while |h| > mu r_e, and is positive
+  /// elsewhere. What changes sign then is |h| - mu r_e, a little more of it lest it does so at the dead centres.
+  S kink_margin_at(const Configuration<S>& configuration, const State& y, const S& force) const {
+    if (!has_gear_loss(vehicle.motor)) return pitch_margin_at(configuration, y);
+    if (has_load_free_friction()) return motion_by_every_law(configuration, y, force).gear_torque;
+    return half * configuration.kinematics.crank_jacobian - vehicle.friction.radius +
+           S(1e-9) * typical_crank_lever(vehicle.transmission);
+  }
+  bool has_load_free_friction() const {
+    return any<S>(vehicle.friction.torque > S(0.0)) || any<S>(vehicle.friction.damping > S(0.0));
+  }
+  /// Takes the side of the kink on which kink_margin_at() has the sign `side`, the rod force that of `force`.
+  void choose_side(const S& side, const S& force) {
+    if (!has_gear_loss(vehicle.motor)) pitching = side;
+    else if (has_load_free_friction()) gear = side;
+    else gear = select<S>(side > S(0.0), force * half, S(1.0));
+  }
+
   /// The branch that holds is chosen on the spot.
   [[gnu::always_inline]] Motion<S> motion_on_its_branch(const Configuration<S>& configuration, const State& y) const {
-    const S i = current(y);
-    const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    const IntermediateTerms<S> terms =
-        has_every_law ? terms_by_every_law(configuration, y, i, v_t, sign_of(pitch_margin_at(configuration, y)))
-                      : terms_of<false>(configuration, y, i, v_t, S(1.0));
-    return motion_on(vehicle, terms, mode(sign_of(terms.force_switch)));
+    if (has_every_law) return motion_on_its_branch_by_every_law(configuration, y);
+    const IntermediateTerms<S> terms = terms_of<false>(configuration, y);
+    return motion_on<false>(vehicle, terms, mode(sign_of(terms.force_switch)));
   }
 
   template <bool every_law>
-  [[gnu::always_inline]] IntermediateTerms<S> terms_of(const Configuration<S>& configuration, const State& y,
-                                                       const S& i, const S& v_t, const S& on_pitching) const {
-    return terms_at<every_law>(vehicle, MotionState<S>{configuration, y[0], i, v_t},
-                               Mode<S>{half, S(1.0), S(1.0), S(1.0), on_pitching});
+  [[gnu::always_inline]] IntermediateTerms<S> terms_of(const Configuration<S>& configuration, const State& y) const {
+    const S i = current(y);
+    const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
+    return terms_at<every_law>(vehicle, MotionState<S>{configuration, y[0], i, v_t}, mode(S(1.0)));
   }
   template <bool every_law>
   [[gnu::always_inline]] Motion<S> motion_of(const Configuration<S>& configuration, const State& y,
                                              const S& force) const {
-    const S i = current(y);
-    const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    return motion_on(vehicle, terms_of<every_law>(configuration, y, i, v_t, pitching), mode(force));
+    return motion_on<every_law>(vehicle, terms_of<every_law>(configuration, y), mode(force));
   }
 
   // Out of the way of vehicles without: a call in the midst of an evaluation costs registers.
-  [[gnu::noinline]] IntermediateTerms<S> terms_by_every_law(const Configuration<S>& configuration, const State& y,
-                                                            const S& i, const S& v_t, const S& on_pitching) const {
-    return terms_of<true>(configuration, y, i, v_t, on_pitching);
+  [[gnu::noinline]] Motion<S> motion_on_its_branch_by_every_law(const Configuration<S>& configuration,
+                                                                const State& y) const {
+    HalfCycle branch = *this;
+    branch.pitching = sign_of(pitch_margin_at(configuration, y));
+    const auto motion = [&] {
+      const IntermediateTerms<S> terms = branch.template terms_of<true>(configuration, y);
+      return motion_on<true>(vehicle, terms, branch.mode(sign_of(terms.force_switch)));
+    };
+    branch.gear = S(1.0);
+    Motion<S> m = motion();
+    if (!has_gear_loss(vehicle.motor)) return m;
+    // As mode_at(): on one of its branches the torque on the gearbox has the sign of the branch.
+    branch.gear = sign_of(m.gear_torque);
+    return motion();
   }
   [[gnu::noinline]] Motion<S> motion_by_every_law(const Configuration<S>& configuration, const State& y,
                                                   const S& force) const {

@@ -12,6 +12,7 @@ inline constexpr double lane_angle_spacing = pi / 16.0, lane_torque_margin = 0.0
 /// Whether what lanes hold back covers what lies between their crank angles: in this family of slider-cranks the torque
 /// of springs and friction there exceeds that at the angles beside it by less. Of others statics must tell.
 inline bool lanes_see_locks(const Vehicle<double>& v) {
+  if (v.transmission.type != TransmissionType::slider_crank || has_gear_loss(v.motor)) return false;
   const SliderCrank<double>& c = v.transmission.slider_crank;
   const double obliquity = c.crank_radius / c.rod_length;
   const double reach = std::abs(c.rod_length - c.mid_stroke_height) + c.crank_radius;

@@ -43,7 +43,24 @@ void solve_block(const EnsembleMember* const* members, int count, const PackSett
       tables.steps_per_angle = gather([&](const EnsembleMember& m) { return table_of(m).steps_per_angle; });
       tables.last_step = gather([&](const EnsembleMember& m) { return double(table_of(m).steps - 1); });
     }
-    PackOrbit<L, N> orbit(vehicle, settings);
+    LaneMechanism<L> mechanism(vehicle.transmission);
+    if (!mechanism.is_slider_crank) {
+      HalfTurns turns[std::size_t(L::lanes)];
+      for (int lane = 0; lane < L::lanes; ++lane) turns[lane] = half_turns(member(lane).vehicle.transmission);
+      const auto of_turns = [&](const auto& number_of) {
+        for (int lane = 0; lane < L::lanes; ++lane) numbers[lane] = number_of(turns[lane]);
+        return L::load(numbers);
+      };
+      for (std::size_t half = 0; half < 2; ++half) {
+        mechanism.middle[half] = of_turns([half](const HalfTurns& h) { return (&h.middle[0])[half]; });
+        mechanism.reach[half] = of_turns([half](const HalfTurns& h) { return (&h.reach[0])[half]; });
+      }
+      LaneCurves<L>& curves = vehicle.transmission.tabulated.curve;
+      for (int lane = 0; lane < L::lanes; ++lane) curves.of_lane[lane] = turns[lane].curve;
+      curves.start = of_turns([](const HalfTurns& h) { return h.curve_start; });
+      curves.amplitude = of_turns([](const HalfTurns& h) { return h.curve_amplitude; });
+    }
+    PackOrbit<L, N> orbit(vehicle, mechanism, settings);
     if (settings.approach == PackApproach::resume) {
       orbit.visit_start([&](L& to, const auto& read) {
         for (int lane = 0; lane < L::lanes; ++lane)

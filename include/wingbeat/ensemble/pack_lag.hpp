@@ -16,11 +16,11 @@ void PackOrbit<L, N>::build_mesh_with_layers(int half) {
   const ForceSwitches<L>& s = switches_[std::size_t(half)];
   HalfMesh<L>& mesh = mesh_[std::size_t(half)];
   const L width = L(relaxation_times) * vehicle_.motor.armature_inductance * per_resistance_ * y_[0];
-  const Mask relaxes = width < L(0.75 * pi / segments_);
+  const Mask relaxes = width < L(1.5 / segments_) * reach(half);
   std::array<L, 2 * max_force_switches> place;
-  place.fill(L(quarter));
+  place.fill(reach(half));
   for (std::size_t n = 0; n < max_force_switches; ++n) {
-    const L next = n + 1 < max_force_switches ? s.angle[n + 1] : L(quarter);
+    const L next = n + 1 < max_force_switches ? s.angle[n + 1] : reach(half);
     place[n] = select<L>(relaxes, place[n], s.angle[n]);
     place[2 * n] = select<L>(relaxes, s.angle[n], place[2 * n]);
     place[2 * n + 1] = select<L>(relaxes, min(s.angle[n] + width, L(0.5) * (s.angle[n] + next)), place[2 * n + 1]);
@@ -28,7 +28,7 @@ void PackOrbit<L, N>::build_mesh_with_layers(int half) {
   const L count = select<L>(relaxes, L(2.0) * s.count, s.count);
   unresolved_ = unresolved_ || count > L(double(segments_ - 1));
   mesh.force.fill(s.first_sign);
-  lay_segments(place, count, mesh, [&](std::size_t m, std::size_t n, const Mask& beyond) {
+  lay_segments(place, count, reach(half), mesh, [&](std::size_t m, std::size_t n, const Mask& beyond) {
     const Mask changes = n % 2 == 0 ? beyond : beyond && !relaxes;
     mesh.force[m] = select<L>(changes, -mesh.force[m], mesh.force[m]);
   });

@@ -11,7 +11,7 @@ namespace wingbeat {
 template <class L, int N>
 L PackOrbit<L, N>::find_switches(ForceSwitches<L>& known, const L* u, const L* force, int count) {
   ForceSwitches<L> found;
-  found.angle.fill(L(quarter));
+  found.angle.fill(u[count]);
   found.count = L(0.0);
   found.first_sign = sign_of(force[0]);
   for (int k = 0; k < count; ++k) {
@@ -60,26 +60,27 @@ L PackOrbit<L, N>::find_switches(ForceSwitches<L>& known, const L* u, const L* f
   return offset;
 }
 
-/// Segments between places, growing, of which lanes have `count`: of equal length between two of them, their number in
-/// proportion to the distance. pass(m, n, where) is called for segment m where it lies beyond place n.
+/// Segments from -reach to reach between places, growing, of which lanes have `count`: of equal length between two of
+/// them, their number in proportion to the distance. pass(m, n, where) is called for segment m where it lies beyond
+/// place n.
 template <class L, int N>
 template <std::size_t max_ends, class Pass>
-void PackOrbit<L, N>::lay_segments(const std::array<L, max_ends>& place, const L& count, HalfMesh<L>& mesh,
-                                   const Pass& pass) const {
+void PackOrbit<L, N>::lay_segments(const std::array<L, max_ends>& place, const L& count, const L& reach,
+                                   HalfMesh<L>& mesh, const Pass& pass) const {
   const int steps = segments_;
-  const L all(steps);
+  const L all(steps), per_length = L(0.5 * steps) / reach;
   std::array<L, max_ends + 2> node, position, per_step;
   node[0] = L(0.0);
-  position[0] = L(-quarter);
+  position[0] = -reach;
   for (std::size_t n = 0; n < max_ends; ++n) {
     const Mask used = count > L(double(n));
-    const L wanted = nearest_whole(L((place[n] + L(quarter)) * L(steps / pi)));
+    const L wanted = nearest_whole(L((place[n] + reach) * per_length));
     const L within = min(max(wanted, node[n] + L(1.0)), all - (count - L(double(n))));
     node[n + 1] = select<L>(used, within, all);
-    position[n + 1] = select<L>(used, place[n], L(quarter));
+    position[n + 1] = select<L>(used, place[n], reach);
   }
   node[max_ends + 1] = all;
-  position[max_ends + 1] = L(quarter);
+  position[max_ends + 1] = reach;
   for (std::size_t n = 0; n <= max_ends; ++n) {
     per_step[n] = (position[n + 1] - position[n]) * inverse_of(max(L(node[n + 1] - node[n]), L(0.5)));
   }
@@ -93,7 +94,7 @@ void PackOrbit<L, N>::lay_segments(const std::array<L, max_ends>& place, const L
     }
     mesh.u[std::size_t(m)] = u;
   }
-  mesh.u[std::size_t(steps)] = L(quarter);
+  mesh.u[std::size_t(steps)] = reach;
 }
 
 /// The segments of half an iterate, which end at the sign changes of the rod force.
@@ -104,7 +105,7 @@ void PackOrbit<L, N>::build_mesh(int half) {
   const ForceSwitches<L>& s = switches_[std::size_t(half)];
   HalfMesh<L>& mesh = mesh_[std::size_t(half)];
   mesh.force.fill(s.first_sign);
-  lay_segments(s.angle, s.count, mesh, [&](std::size_t m, std::size_t, const Mask& beyond) {
+  lay_segments(s.angle, s.count, reach(half), mesh, [&](std::size_t m, std::size_t, const Mask& beyond) {
     mesh.force[m] = select<L>(beyond, -mesh.force[m], mesh.force[m]);
   });
 }

@@ -123,7 +123,7 @@ L PackOrbit<L, N>::floquet_multiplier() {
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       const std::size_t base = first_node(half, s);
       const L h = mesh.u[s + 1] - mesh.u[s];
-      if (kinks_) system.pitching = mesh.pitching[s];
+      if (kinks_) system.choose_side(mesh.kink[s], mesh.force[s]);
       Matrix end_before = jacobian[intervals];
       for (std::size_t m = 0; m <= intervals; ++m) {
         jacobian[m] = jacobian_at_node(system, base + m, mesh.force[s]);

@@ -207,10 +207,12 @@ void PackOrbit<L, N>::newton_iteration() {
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       const std::size_t base = first_node(half, s);
       const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s];
-      if (kinks_) system.pitching = mesh.pitching[s];
+      if (kinks_) system.choose_side(mesh.kink[s], mesh.force[s]);
       for (std::size_t m = 0; m <= intervals; ++m) {
         if (lags_) system.inductive_drop = inductive_drop_[base + m];
-        if (kinks_) margin_[base + m] = system.pitch_margin_at(configuration_of(base + m), trajectory_[base + m]);
+        if (kinks_) {
+          margin_[base + m] = system.kink_margin_at(configuration_of(base + m), trajectory_[base + m], sign);
+        }
         solver::Rates<System>& rates = at_node[last ? m : 0];
         if constexpr (last) {
           visit_node(system, base + m, sign, rates);
@@ -246,7 +248,7 @@ void PackOrbit<L, N>::newton_iteration() {
         for (std::size_t n = 0; n < N; ++n) jump[n] = trajectory_[base - 1][n] - trajectory_[base][n];
         if (s == 0) continue;
         const Mask forces = mesh.force[s - 1] * sign < L(0.0);
-        const Mask switches = kinks_ ? forces || mesh.pitching[s - 1] * mesh.pitching[s] < L(0.0) : forces;
+        const Mask switches = kinks_ ? forces || mesh.kink[s - 1] * mesh.kink[s] < L(0.0) : forces;
         if (!any<L>(switches)) continue;
         const auto switch_at = [&](std::size_t node) {
           return kinks_ ? select<L>(forces, force_[node], margin_[node]) : force_[node];
@@ -331,7 +333,7 @@ void PackOrbit<L, N>::newton_iteration() {
         }
         force[2 * std::size_t(segments_)] = margin_[first_node(half, std::size_t(segments_)) - 1];
         compare(kink_switches_[std::size_t(half)]);
-        kink_depth = max(kink_depth, overlooked_kink(half));
+        kink_depth = max(kink_depth, loses_in_gear_ ? overlooked_gear_kink(half) : overlooked_kink(half));
       }
     }
   }
@@ -352,7 +354,7 @@ void PackOrbit<L, N>::newton_iteration() {
       for (std::size_t k = 0; k < intervals / 2; ++k) error = error * ratio;
       // At the knots of a table third derivatives jump: coefficients fall with their fourth power only, in random
       // signs.
-      if (vehicle_.wings.coefficients.table.from_tables) error = max(error, L(L(1.0 / 128.0) * high_[c] * scale));
+      if (has_knots_) error = max(error, L(L(1.0 / 128.0) * high_[c] * scale));
       step_error_ = max(step_error_, error);
       if (c < 2) speed_error_ = max(speed_error_, error);
     }
@@ -441,7 +443,7 @@ void PackOrbit<L, N>::linearise(const System& system, std::size_t node, const L&
   const Configuration<L>& configuration = configuration_of(node);
   const State& y = trajectory_[node];
   evaluate<false>(system, configuration, y, force, rates);
-  if (N == 1 || adds_mass_) {
+  if (N == 1 || adds_mass_ || loses_in_gear_) {
     jacobian = jacobian_at(system, configuration, y, rates.dy, force);
     return;
   }

@@ -35,7 +35,7 @@ inline constexpr int max_energy_extremes = 5;  ///< of the energy stored in wing
 /// Where the rod force changes sign within half an iterate.
 template <class L>
 struct ForceSwitches {
-  std::array<L, max_force_switches> angle;  ///< [rad], growing; pi/2 beyond the count
+  std::array<L, max_force_switches> angle;  ///< u [rad], growing; the end of the half beyond the count
   L count;
   L first_sign;  ///< sign of the rod force at the start
 };
@@ -44,8 +44,8 @@ struct ForceSwitches {
 template <class L>
 struct HalfMesh {
   std::array<L, max_half_segments + 1> u;
-  std::array<L, max_half_segments> force;     ///< sign of the rod force on each segment
-  std::array<L, max_half_segments> pitching;  ///< HalfCycle::pitching there
+  std::array<L, max_half_segments> force;  ///< sign of the rod force on each segment
+  std::array<L, max_half_segments> kink;   ///< sign of HalfCycle::kink_margin_at() there
 };
 
 /// Value and derivative by crank angle: |beta'| [rad/s], i [A], -omega and omega [rad/s], |F| [N], energy stored in
@@ -68,7 +68,7 @@ struct PeakBracket {
 /// The trajectory of the state over one segment, another one in every lane.
 template <class L, int N>
 struct SegmentTrajectory {
-  L half, u, length, force, pitching;
+  L half, u, length, force, kink;
   std::array<std::array<L, N>, solver::CollocationRule::max_points + 1> legendre;  ///< coefficients of the state
   std::array<L, solver::CollocationRule::max_points + 1> inductive_drop;           ///< and of HalfCycle::inductive_drop
 };
@@ -79,14 +79,14 @@ class PackOrbit {
   using Mask = wingbeat::Mask<L>;
   using System = HalfCycle<L, N>;
   using Matrix = std::array<std::array<L, N>, N>;
-  static constexpr double quarter = slider_crank_dead_centre;
   static constexpr std::size_t nodes_per_segment = solver::CollocationRule::max_points;
   static constexpr std::size_t max_nodes = 2 * max_half_segments * nodes_per_segment;
   static constexpr int coarse_samples = 2 * coarse_half_steps + 1;
 
  public:
-  PackOrbit(const Vehicle<L>& vehicle, const PackSettings& settings)
+  PackOrbit(const Vehicle<L>& vehicle, const LaneMechanism<L>& mechanism, const PackSettings& settings)
       : vehicle_(vehicle),
+        mechanism_(mechanism),
         settings_(settings),
         rule_(solver::collocation_rule(settings.intervals)),
         segments_(settings.segments) {
@@ -95,10 +95,12 @@ class PackOrbit {
     per_resistance_ = L(1.0) / circuit_resistance(vehicle);
     current_scale_ = vehicle.voltage * per_resistance_;
     wanted_ = settings.wanted;
-    geometry_ = geometry_of(vehicle.transmission.slider_crank);
     const L stiffness = vehicle.wing_count * vehicle.spring.stiffness;
     compliance_ = select<L>(stiffness > L(0.0), L(0.5) / max(stiffness, L(1e-300)), L(0.0));
-    kinks_ = kinks_on_lanes(vehicle.wings);
+    loses_in_gear_ = has_gear_loss(vehicle.motor);
+    kinks_ = loses_in_gear_ || kinks_on_lanes(vehicle.wings);
+    has_knots_ =
+        vehicle.wings.coefficients.table.from_tables || vehicle.transmission.type == TransmissionType::tabulated;
     adds_mass_ = any<L>(vehicle.wings.added_inertia > L(0.0));
     every_law_ = kinks_ || adds_mass_;
     in_one_piece_ = settings.in_one_piece;
@@ -136,7 +138,13 @@ class PackOrbit {
 
  private:
   System half_cycle(int half) const {
-    return {vehicle_, geometry_, per_inductance_, per_resistance_, L(half == 0 ? 1.0 : -1.0), every_law_};
+    return {vehicle_,
+            mechanism_,
+            per_inductance_,
+            per_resistance_,
+            L(half == 0 ? 1.0 : -1.0),
+            mechanism_.middle[std::size_t(half)],
+            every_law_};
   }
 
   [[gnu::noinline, gnu::flatten]] void tabulate();
@@ -153,10 +161,12 @@ class PackOrbit {
   [[gnu::noinline, gnu::flatten]] L find_switches(ForceSwitches<L>& known, const L* u, const L* force, int count);
   [[gnu::noinline, gnu::flatten]] void build_mesh(int half);
   template <std::size_t max_ends, class Pass>
-  void lay_segments(const std::array<L, max_ends>& place, const L& count, HalfMesh<L>& mesh, const Pass& pass) const;
+  void lay_segments(const std::array<L, max_ends>& place, const L& count, const L& reach, HalfMesh<L>& mesh,
+                    const Pass& pass) const;
   [[gnu::noinline]] void build_mesh_with_kinks(int half);
   [[gnu::noinline]] void build_mesh_with_layers(int half);
   [[gnu::noinline]] L overlooked_kink(int half) const;
+  [[gnu::noinline]] L overlooked_gear_kink(int half) const;
   [[gnu::noinline]] L error_of_peak_on_kink(const L& peak) const;
   [[gnu::noinline]] void march();
   [[gnu::noinline, gnu::flatten]] void place_nodes();
@@ -282,17 +292,20 @@ class PackOrbit {
     return (std::size_t(half * segments_) + segment) * std::size_t(rule_.intervals + 1);
   }
 
+  const L& reach(int half) const { return mechanism_.reach[std::size_t(half)]; }
+
   const Vehicle<L>& vehicle_;
+  const LaneMechanism<L>& mechanism_;
   const PackSettings& settings_;
   const solver::CollocationRule& rule_;
   int segments_;  ///< of half an iterate
-  CrankGeometry<L> geometry_;
   L per_inductance_, per_resistance_, current_scale_, no_load_, floor_;
   Matrix monodromy_;  ///< of an iterate
   std::array<std::array<Configuration<L>, coarse_samples>, 2> table_;
   State y_;         ///< where an iterate starts
   bool every_law_;  ///< HalfCycle::has_every_law
   bool adds_mass_;  ///< of the air
+  bool has_knots_;  ///< in a table of force coefficients or of the stroke
   Mask unresolved_, locked_, in_doubt_;
   Mask settled_;  ///< on the trajectory that the last iteration will start from
   Mask lost_;     ///< the crank comes near standstill on the way to the orbit
@@ -319,10 +332,10 @@ class PackOrbit {
   std::array<L, pack_integrals.size()> integrals_;
   std::array<L, 5> high_, low_;  ///< sums of the last and last but two coefficients of what limits the error
   std::array<bool, quantity_count> wanted_;
-  // Where the coefficients have kinks within a half: the switches of the pitch margin, as those of the rod force.
-  bool kinks_;
+  // Where coefficients or a gearbox have kinks within a half: their switches, as those of the rod force.
+  bool kinks_, loses_in_gear_;
   std::array<ForceSwitches<L>, 2> kink_switches_{};
-  std::array<L, max_nodes> margin_;  ///< of the pitching at the nodes [rad]
+  std::array<L, max_nodes> margin_;  ///< HalfCycle::kink_margin_at() the nodes [rad or N m]
   // The current behind the speed, where the inductance is small.
   bool lags_;
   std::array<L, max_nodes> inductive_drop_;  ///< HalfCycle::inductive_drop at the nodes
@@ -423,7 +436,6 @@ Metrics<L> PackOrbit<L, N>::solve(const L& mass, const L& bench_torque_constant)
   total(Integral::electrical_work) =
       vehicle_.voltage * total(Integral::current) - vehicle_.source_resistance * total(Integral::current_square);
   total(Integral::travel) = L(two_pi);
-  total(Integral::gear_work) = L(0.0);
   total(Integral::motor_work) =
       total(Integral::friction_work) + total(Integral::aero_work) + total(Integral::residual_work);
   const auto is_wanted = [&](Quantity q) { return wanted_[std::size_t(q)]; };

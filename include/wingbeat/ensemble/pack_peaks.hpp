@@ -25,7 +25,7 @@ void PackOrbit<L, N>::follow(const L& segment, SegmentTrajectory<L, N>& trajecto
       trajectory.u = select<L>(here, mesh.u[s], trajectory.u);
       trajectory.length = select<L>(here, mesh.u[s + 1] - mesh.u[s], trajectory.length);
       trajectory.force = select<L>(here, mesh.force[s], trajectory.force);
-      if (kinks_) trajectory.pitching = select<L>(here, mesh.pitching[s], trajectory.pitching);
+      if (kinks_) trajectory.kink = select<L>(here, mesh.kink[s], trajectory.kink);
       for (std::size_t k = 0; lags_ && k <= intervals; ++k) {
         L sum(0.0);
         for (std::size_t j = 0; j <= intervals; ++j) sum = sum + L(rule_.legendre[k][j]) * inductive_drop_[base + j];
@@ -68,8 +68,10 @@ void PackOrbit<L, N>::follow(const L& segment, SegmentTrajectory<L, N>& trajecto
 template <class L, int N>
 Observable<L> PackOrbit<L, N>::observable_inside(Quantity quantity, const SegmentTrajectory<L, N>& trajectory,
                                                  const L& x) const {
-  System system = {vehicle_, geometry_, per_inductance_, per_resistance_, trajectory.half, every_law_};
-  if (kinks_) system.pitching = trajectory.pitching;
+  System system = half_cycle(0);
+  system.half = trajectory.half;
+  system.middle = select<L>(trajectory.half > L(0.0), mechanism_.middle[0], mechanism_.middle[1]);
+  if (kinks_) system.choose_side(trajectory.kink, trajectory.force);
   const L t = L(2.0) * x * inverse_of(max(trajectory.length, L(1e-12))) - L(1.0);
   State y;
   for (std::size_t n = 0; n < N; ++n) y[n] = trajectory.legendre[0][n] + t * trajectory.legendre[1][n];

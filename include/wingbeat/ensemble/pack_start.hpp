@@ -15,7 +15,7 @@ void PackOrbit<L, N>::tabulate() {
     const System system = half_cycle(half);
     for (int k = 0; k < coarse_samples; ++k) {
       table_[std::size_t(half)][std::size_t(k)] =
-          system.configuration(L(quarter * (2.0 * k / (coarse_samples - 1) - 1.0)));
+          system.configuration(L(reach(half) * L(2.0 * k / (coarse_samples - 1) - 1.0)));
     }
   }
 }
@@ -56,7 +56,7 @@ L PackOrbit<L, N>::guess_speed() {
   }
   const System downward = half_cycle(1);
   const OrbitGuess<L> guess =
-      guess_orbit(vehicle_, places, [&](const L& angle) { return downward.configuration(L(quarter) - angle); });
+      guess_orbit(vehicle_, places, [&](const L& angle) { return downward.configuration(reach(1) - angle); });
   y_[0] = guess.crank_speed;
   if constexpr (N == 2) y_[1] = algebraic_current(vehicle_, vehicle_.voltage, guess.earlier_speed);
   return guess.balanced.count;
@@ -71,7 +71,7 @@ void PackOrbit<L, N>::start_from_rest() {
   const int steps_per_cycle = settings_.start_up_steps;
   // The kinks leave an error of the second order, which counts most where the crank almost stands still.
   L slow_limit = L(1.92 / steps_per_cycle) * no_load_;
-  constexpr double end = 4.0 * pi - quarter;
+  const L end = L(4.0 * pi) + (mechanism_.middle[0] - reach(0));
   const L shortest = L(two_pi / double(steps_per_cycle)) * inverse_of(no_load_);
   // A current that settles faster than the method is stable follows the speed. The inductance left out changes the
   // speed by less than its share of the motor's time constant.
@@ -91,12 +91,11 @@ void PackOrbit<L, N>::start_from_rest() {
   const L longest = max(shortest, L(0.5) * inverse_of(fastest));
   const L start_limit = min(L(1.3) * slow_limit, L(0.05) * no_load_);
   const auto rates = [&](const Moving& x) {
-    const L sine = sin(x[0]), cosine = cos(x[0]);
     System system = half_cycle(0);
     State y;
     for (std::size_t n = 0; n < N; ++n) y[n] = x[n + 1];
     if constexpr (N == 2) y[1] = select<L>(at_once, algebraic_current(vehicle_, vehicle_.voltage, y[0]), y[1]);
-    const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
+    const CrankKinematics<L> k = mechanism_.kinematics(x[0]);
     system.half = sign_of(k.stroke_slope);
     const Motion<L> m = system.motion_on_its_branch(system.configuration_of(k), y);
     Moving r;
@@ -138,8 +137,8 @@ void PackOrbit<L, N>::start_from_rest() {
     slow = slow || (started && !done && !(next[1] > slow_limit));
     waited = select<L>(slow || !started, waited + dt * inverse_of(shortest), waited);
     const Mask stops = started && !done && !stopped && !(next[1] > L(0.0));
-    const Mask arrives = !done && !stopped && next[0] >= L(end);
-    const L part = (L(end) - x[0]) * inverse_of(max(L(next[0] - x[0]), L(1e-300)));
+    const Mask arrives = !done && !stopped && next[0] >= end;
+    const L part = (end - x[0]) * inverse_of(max(L(next[0] - x[0]), L(1e-300)));
     for (std::size_t j = 0; j < N; ++j) y_[j] = select<L>(arrives, x[j + 1] + part * (next[j + 1] - x[j + 1]), y_[j]);
     done = done || arrives;
     stopped = stopped || stops;
@@ -152,8 +151,7 @@ void PackOrbit<L, N>::start_from_rest() {
   }
   // A crank that has come to rest where friction outweighs the drive, at the present current and at the one that it
   // settles to, stays.
-  const L sine = sin(x[0]), cosine = cos(x[0]);
-  const CrankKinematics<L> k = crank_kinematics(geometry_, sine, cosine);
+  const CrankKinematics<L> k = mechanism_.kinematics(x[0]);
   const L N_k_beta = spring_moment(vehicle_, k);
   L margin = lock_margin(vehicle_, k, N_k_beta, stall);
   if constexpr (N == 2) {
@@ -166,7 +164,7 @@ void PackOrbit<L, N>::start_from_rest() {
   constexpr double beyond = 0.05;  // [rad]
   // What the springs' torque exceeds the motor's stall torque and friction by [N m].
   const auto turns_back = [&](const L& angle) {
-    const CrankKinematics<L> kinematics = crank_kinematics(geometry_, sin(angle), cos(angle));
+    const CrankKinematics<L> kinematics = mechanism_.kinematics(angle);
     const L F_s = static_rod_force(kinematics, spring_moment(vehicle_, kinematics));
     return F_s * kinematics.crank_jacobian + vehicle_.load_torque - stall - holding_torque(vehicle_, F_s);
   };
@@ -271,25 +269,25 @@ void PackOrbit<L, N>::replace_stiff(const System& system, const Configuration<L>
 template <class L, int N>
 template <bool last>
 void PackOrbit<L, N>::coarse_iterate() {
-  constexpr double h = pi / coarse_half_steps;
   slowest_ = y_[0];
-  std::array<L, coarse_samples> angles;
-  for (std::size_t k = 0; k < coarse_samples; ++k)
-    angles[k] = L(quarter * (2.0 * double(k) / (coarse_samples - 1) - 1.0));
   for (int half = 0; half < 2; ++half) {
     const System system = half_cycle(half);
+    const L h = reach(half) * L(2.0 / coarse_half_steps), half_h = L(0.5) * h;
+    std::array<L, coarse_samples> angles;
+    for (std::size_t k = 0; k < coarse_samples; ++k)
+      angles[k] = reach(half) * L(2.0 * double(k) / (coarse_samples - 1) - 1.0);
     const auto& table = table_[std::size_t(half)];
     std::array<L, coarse_samples> force, margin;
-    const auto moved = [](const State& from, const State& slope, double by) {
+    const auto moved = [](const State& from, const State& slope, const L& by) {
       State to;
-      for (std::size_t n = 0; n < N; ++n) to[n] = from[n] + L(by) * slope[n];
+      for (std::size_t n = 0; n < N; ++n) to[n] = from[n] + by * slope[n];
       return to;
     };
     for (std::size_t k = 0; k + 2 < coarse_samples; k += 2) {
       const auto slope_at = [&](std::size_t sample, const State& y) {
         const Motion<L> m = system.motion_on_its_branch(table[sample], y);
         force[sample] = m.force_switch;
-        if (kinks_) margin[sample] = m.aero.pitch_margin;
+        if (kinks_) margin[sample] = system.kink_margin_at(table[sample], y, sign_of(m.force_switch));
         return system.template rates_of<false>(m, y, L(1.0)).dy;
       };
       const State k1 = slope_at(k, y_);
@@ -297,19 +295,19 @@ void PackOrbit<L, N>::coarse_iterate() {
       Matrix jacobian;
       if (settings_.implicit) {
         jacobian = jacobian_on_its_branch(system, table[k], y_, k1);
-        stiff = is_stiff(jacobian, L(h));
+        stiff = is_stiff(jacobian, h);
       }
       State next = y_;
       if (kinks_ || !all<L>(stiff)) {  // the margins are those of the explicit stages
-        const State k2 = slope_at(k + 1, moved(y_, k1, 0.5 * h));
-        const State k3 = slope_at(k + 1, moved(y_, k2, 0.5 * h));
+        const State k2 = slope_at(k + 1, moved(y_, k1, half_h));
+        const State k3 = slope_at(k + 1, moved(y_, k2, half_h));
         const State k4 = slope_at(k + 2, moved(y_, k3, h));
         for (std::size_t n = 0; n < N; ++n) {
-          next[n] = y_[n] + L(h / 6.0) * (k1[n] + L(2.0) * (k2[n] + k3[n]) + k4[n]);
+          next[n] = y_[n] + L(1.0 / 6.0) * h * (k1[n] + L(2.0) * (k2[n] + k3[n]) + k4[n]);
         }
       }
       if (any<L>(stiff)) {
-        replace_stiff(system, &table[k], angles[k], L(h), y_, jacobian, stiff, next, force[k + 1], force[k + 2]);
+        replace_stiff(system, &table[k], angles[k], h, y_, jacobian, stiff, next, force[k + 1], force[k + 2]);
       }
       y_ = next;
       slowest_ = min(slowest_, y_[0]);
@@ -341,7 +339,7 @@ void PackOrbit<L, N>::march() {
     for (std::size_t s = 0; s < std::size_t(segments_); ++s) {
       Subinterval& subinterval = subintervals_[std::size_t(half * segments_) + s];
       const L sign = mesh.force[s], h = mesh.u[s + 1] - mesh.u[s], half_h = L(0.5) * h;
-      if (kinks_) system.pitching = mesh.pitching[s];
+      if (kinks_) system.choose_side(mesh.kink[s], mesh.force[s]);
       u[2 * s] = mesh.u[s];
       u[2 * s + 1] = mesh.u[s] + half_h;
       const Configuration<L>&start = configurations[s % 2 == 0 ? 2 : 0], &middle = configurations[1],
@@ -350,7 +348,7 @@ void PackOrbit<L, N>::march() {
       find_configuration(system, mesh.u[s + 1], configurations[s % 2 == 0 ? 0 : 2]);
       evaluate<false>(system, start, y_, sign, k1);
       force[2 * s] = k1.switches[0];
-      if (kinks_) margin[2 * s] = system.pitch_margin_at(start, y_);
+      if (kinks_) margin[2 * s] = system.kink_margin_at(start, y_, sign);
       subinterval.y = y_;
       subinterval.rates = k1.dy;
       Mask stiff = L(1.0) < L(0.0);
@@ -366,7 +364,7 @@ void PackOrbit<L, N>::march() {
         const State inside = moved(y_, k2.dy, half_h);
         evaluate<false>(system, middle, inside, sign, k3);
         force[2 * s + 1] = k3.switches[0];
-        if (kinks_) margin[2 * s + 1] = system.pitch_margin_at(middle, inside);
+        if (kinks_) margin[2 * s + 1] = system.kink_margin_at(middle, inside, sign);
         evaluate<false>(system, end, moved(y_, k3.dy, h), sign, k4);
         for (std::size_t n = 0; n < N; ++n) {
           next[n] = y_[n] + L(1.0 / 6.0) * h * (k1.dy[n] + L(2.0) * (k2.dy[n] + k3.dy[n]) + k4.dy[n]);
@@ -387,7 +385,9 @@ void PackOrbit<L, N>::march() {
         }
         evaluate<false>(system, middle, between, sign, rates);
         force[2 * s + 1] = select<L>(stiff, rates.switches[0], force[2 * s + 1]);
-        if (kinks_) margin[2 * s + 1] = select<L>(stiff, system.pitch_margin_at(middle, between), margin[2 * s + 1]);
+        if (kinks_) {
+          margin[2 * s + 1] = select<L>(stiff, system.kink_margin_at(middle, between, sign), margin[2 * s + 1]);
+        }
       }
       y_ = next;
     }
@@ -398,7 +398,8 @@ void PackOrbit<L, N>::march() {
     subintervals_[std::size_t((half + 1) * segments_)].rates = k4.dy;
     find_switches(switches_[std::size_t(half)], u.data(), force.data(), 2 * segments_);
     if (kinks_) {
-      margin[2 * std::size_t(segments_)] = system.pitch_margin_at(configurations[segments_ % 2 == 0 ? 2 : 0], y_);
+      margin[2 * std::size_t(segments_)] =
+          system.kink_margin_at(configurations[segments_ % 2 == 0 ? 2 : 0], y_, mesh.force[std::size_t(segments_ - 1)]);
       find_switches(kink_switches_[std::size_t(half)], u.data(), margin.data(), 2 * segments_);
     }
   }

@@ -31,11 +31,11 @@ struct Motor {
   }
 };
 
-/// Whether a gearbox loses torque. Batches do not know it: such vehicles are left to the scalar solver.
+/// Whether a gearbox loses torque, in any lane.
 template <Scalar S>
 bool has_gear_loss(const Motor<S>& m) {
-  if constexpr (ScalarTraits<S>::reads_tables) return value_of(m.gear_efficiency) < 1.0;
-  return false;
+  if constexpr (ScalarTraits<S>::lanes > 1) return any<S>(m.gear_efficiency < S(1.0));
+  else return value_of(m.gear_efficiency) < 1.0;
 }
 
 /// e [1], the torque behind the gearbox over that before it (model.md section 9): eta where the motor drives the load,

@@ -59,6 +59,16 @@ inline constexpr ParameterKey scale{"transmission.stroke_scale", "1", range::pos
 inline constexpr ParameterKey reference_radius{"transmission.reference_radius", "m", range::positive};
 }  // namespace stroke_table_key
 
+/// What SIMD lanes, which read no tables by themselves, know of their designs' curves.
+template <Scalar S>
+struct LaneCurves {
+  const StrokeCurve* of_lane[std::size_t(ScalarTraits<S>::lanes)];
+  S start;      ///< crank angle of the first row [rad]
+  S amplitude;  ///< half the peak-to-peak stroke angle [rad]
+
+  LaneCurves(std::nullptr_t = nullptr) {}  // NOLINT: of lanes without
+};
+
 /// A curve times a scale \f$s\f$. Friction acts on the reaction to the wings' moment at the radius r_ref, with levers
 /// that conserve power (model.md section 8).
 /// \f[
@@ -66,7 +76,7 @@ inline constexpr ParameterKey reference_radius{"transmission.reference_radius", 
 /// \f]
 template <Scalar S>
 struct StrokeTable {
-  using Curve = std::conditional_t<ScalarTraits<S>::reads_tables, std::shared_ptr<const StrokeCurve>, std::nullptr_t>;
+  using Curve = std::conditional_t<ScalarTraits<S>::reads_tables, std::shared_ptr<const StrokeCurve>, LaneCurves<S>>;
 
   Curve curve = nullptr;
   S scale = S(1);             ///< multiplies the table's stroke angles [1], > 0
@@ -87,7 +97,7 @@ struct StrokeTable {
 
 void validate(const StrokeTable<double>& t);
 
-/// Kinematics at a crank angle given by its sine and cosine. Packs read no tables and are never given one.
+/// Kinematics at a crank angle given by its sine and cosine. Lanes take kinematics_at_angle().
 template <Scalar S>
 CrankKinematics<S> crank_kinematics(const StrokeTable<S>& t, const S& sin_theta, const S& cos_theta) {
   CrankKinematics<S> k{S(0.0), S(0.0), S(0.0), S(0.0), t.reference_radius, S(0.0)};
@@ -111,13 +121,38 @@ CrankKinematics<S> crank_kinematics(const StrokeTable<S>& t, const S& sin_theta,
   return k;
 }
 
+/// Kinematics of lanes' curves, each on its own piece, at a crank angle [rad].
+template <Scalar S>
+CrankKinematics<S> kinematics_at_angle(const StrokeTable<S>& t, const S& theta)
+  requires(!ScalarTraits<S>::reads_tables)
+{
+  constexpr std::size_t lanes = std::size_t(ScalarTraits<S>::lanes);
+  alignas(64) double position[lanes], coefficient[6][lanes];
+  const S from_start = theta - t.curve.start;
+  S(from_start - S(two_pi) * nearest_whole(S(from_start * S(1.0 / two_pi) - S(0.5)))).store(position);
+  for (std::size_t lane = 0; lane < lanes; ++lane) {
+    const StrokeCurve::Piece& p = t.curve.of_lane[lane]->piece(position[lane]);
+    position[lane] -= p.x0;
+    for (int n = 0; n < 6; ++n) coefficient[n][lane] = (&p.coefficient[0])[n];
+  }
+  const S x = S::load(position);
+  S beta = S::load(coefficient[5]), slope(0.0), half_curve(0.0);  // by Horner's scheme
+  for (int n = 4; n >= 0; --n) {
+    half_curve = half_curve * x + slope;
+    slope = slope * x + beta;
+    beta = beta * x + S::load(coefficient[n]);
+  }
+  const S B_1 = t.scale * slope;
+  return {t.scale * beta, S(0.0), B_1, t.scale * S(2.0) * half_curve, t.reference_radius, t.reference_radius * B_1};
+}
+
 inline Reversals reversals(const StrokeTable<double>& t) { return t.curve->reversals(); }
 
-/// Half the peak-to-peak stroke angle [rad]; not a number on a scalar that reads no tables.
+/// Half the peak-to-peak stroke angle [rad].
 template <Scalar S>
 S stroke_amplitude(const StrokeTable<S>& t) {
   if constexpr (ScalarTraits<S>::reads_tables) return S(0.5) * t.scale * S(t.curve->high() - t.curve->low());
-  return S(std::numeric_limits<double>::quiet_NaN());
+  else return t.scale * t.curve.amplitude;
 }
 
 /// Largest stroke angle to either side [rad].

@@ -148,7 +148,7 @@ struct IntermediateTerms {
 /// \f]
 ///
 /// State: MotionState, or FullState, whose actuator takes the torque \f$T_\mathrm{act}\f$ from D and adds to J.
-template <template <Scalar> class V, Scalar S, class State>
+template <bool every_law = true, template <Scalar> class V, Scalar S, class State>
 [[gnu::always_inline]] inline IntermediateTerms<S> terms_under(const V<S>& v, const State& instant,
                                                                const StrokeLoads<S>& loads, const Mode<S>& mode) {
   const CrankKinematics<S>& k = instant.configuration.kinematics;
@@ -164,10 +164,11 @@ template <template <Scalar> class V, Scalar S, class State>
   const S mechanism = load_free_friction(v.friction, instant.omega, mode.direction);
   const S own = mode.direction * v.motor.friction_torque;
   terms.load_free = mechanism;
-  terms.gear_ratio = gear_torque_ratio(v.motor, mode.gear);
+  terms.gear_ratio = S(1.0);
   terms.inertia = v.motor.inertia;
   terms.drive = terms.motor.torque - terms.motor.drag_torque - (mechanism + own);
-  if (has_gear_loss(v.motor)) {
+  if (every_law && has_gear_loss(v.motor)) {
+    terms.gear_ratio = gear_torque_ratio(v.motor, mode.gear);
     terms.inertia = terms.gear_ratio * v.motor.inertia;
     terms.drive = terms.gear_ratio * (terms.motor.torque - terms.motor.drag_torque - own) - mechanism;
   }
@@ -190,7 +191,7 @@ template <template <Scalar> class V, Scalar S, class State>
 template <bool every_law = true, template <Scalar> class V, Scalar S, class State>
 [[gnu::always_inline]] inline IntermediateTerms<S> terms_at(const V<S>& v, const State& instant, const Mode<S>& mode) {
   const S stroke_velocity = instant.configuration.kinematics.stroke_slope * instant.omega;
-  return terms_under(v, instant, stroke_loads<every_law>(v, stroke_velocity, mode), mode);
+  return terms_under<every_law>(v, instant, stroke_loads<every_law>(v, stroke_velocity, mode), mode);
 }
 
 /// Rod force and accelerations of an instant, in a given mode (model.md section 2, eqs 1, 5-11, 21). With A, C and
@@ -204,7 +205,7 @@ template <bool every_law = true, template <Scalar> class V, Scalar S, class Stat
 /// T_\mathrm{m} = F h + \mu r_\mathrm{e} |F| \operatorname{sign}\omega + T_\mathrm{l} + T_\mathrm{x}
 /// \end{aligned}
 /// \f]
-template <template <Scalar> class V, Scalar S>
+template <bool every_law = true, template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const IntermediateTerms<S>& terms,
                                                   const Mode<S>& mode) {
   Motion<S> m;
@@ -230,7 +231,7 @@ template <template <Scalar> class V, Scalar S>
   m.motor_torque = m.rod_force * k.crank_jacobian + m.friction_torque;
   if constexpr (ScalarTraits<S>::reads_tables) m.motor_torque = m.motor_torque + v.load_torque;
   m.gear_torque = m.gear_loss = S(0.0);
-  if (has_gear_loss(v.motor)) {
+  if (every_law && has_gear_loss(v.motor)) {
     m.gear_torque =
         mode.direction * (terms.motor.torque - terms.motor.drag_torque - v.motor.inertia * m.crank_acceleration) -
         v.motor.friction_torque;
