@@ -1,4 +1,6 @@
 // Arrays of designs, sweeps and the studies that files describe, for Python. Nothing is computed here.
+#include <cmath>
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <utility>
@@ -6,6 +8,7 @@
 
 #include "binding.hpp"
 #include "report/result_trees.hpp"
+#include "wingbeat/cycle/metric_gradients.hpp"
 #include "wingbeat/files/bench_file.hpp"
 #include "wingbeat/files/datasheet_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
@@ -16,17 +19,19 @@
 #include "wingbeat/report/fit_report.hpp"
 #include "wingbeat/report/identification_report.hpp"
 #include "wingbeat/report/tolerance_report.hpp"
+#include "wingbeat/study/sweep_gradients.hpp"
+#include "wingbeat/time/transient.hpp"
 
 namespace wingbeat::python {
 namespace {
 
 // ---- very many
 
-/// Solves a design for each row of the columns, which are in the order of the keys of the study's one axis. That study,
-/// of a single design, is where the program's checks are made.
-py::dict solve_columns(const std::string& study, const Design<double>& base,
-                       const std::vector<py::array_t<double>>& columns, std::size_t count, const std::string& condition,
-                       int threads, const py::object& progress) {
+/// A design for each row of the columns, which are in the order of the keys of the study's one axis. That study, of a
+/// single design, is where the program's checks are made.
+Sweep sweep_of_columns(const std::string& study, const Design<double>& base,
+                       const std::vector<py::array_t<double>>& columns, std::size_t count,
+                       const std::string& condition) {
   Sweep sweep = parse_study({.study_name = "columns", .study = study, .design = base}).sweep;
   sweep.variants.at(0).condition = choice<Condition>("condition", condition);
   SweepAxis& axis = sweep.axes.at(0);
@@ -37,7 +42,13 @@ py::dict solve_columns(const std::string& study, const Design<double>& base,
     if (std::size_t(columns[q].size()) != count) throw py::value_error("columns of different lengths");
     axis.quantities[q].values.assign(columns[q].data(), columns[q].data() + count);
   }
+  return sweep;
+}
 
+py::dict solve_columns(const std::string& study, const Design<double>& base,
+                       const std::vector<py::array_t<double>>& columns, std::size_t count, const std::string& condition,
+                       int threads, const py::object& progress) {
+  const Sweep sweep = sweep_of_columns(study, base, columns, count, condition);
   SweepColumns found = watched(progress, [&](Watch& watch) {
     return solve_sweep(sweep, threads, [&watch](const SweepProgress& now) { watch.report(now); });
   });
@@ -55,6 +66,25 @@ py::dict solve_columns(const std::string& study, const Design<double>& base,
   result["metrics"] = numbers;
   result["kept"] = kept;
   return result;
+}
+
+/// Derivatives [row][metric][key] of those rows.
+py::array_t<double> gradient_of_columns(const std::string& study, const Design<double>& base,
+                                        const std::vector<py::array_t<double>>& columns, std::size_t count,
+                                        const std::string& condition, int threads, const py::object& progress,
+                                        const std::vector<std::uint64_t>& rows, const std::vector<int>& metrics,
+                                        const std::vector<std::string>& keys) {
+  const Sweep sweep = sweep_of_columns(study, base, columns, count, condition);
+  std::vector<Metric> wanted;
+  for (const int m : metrics) wanted.push_back(Metric(m));
+  std::vector<DesignParameter> parameters;
+  for (const std::string& key : keys) parameters.push_back(design_parameter(key));
+  std::vector<double> found = watched(progress, [&](Watch& watch) {
+    return sweep_gradients(
+        sweep, rows, wanted, parameters, start_up_in_time(), side_by_side(threads),
+        [&](double share) { watch.report({rows.size(), std::uint64_t(std::lround(share * double(rows.size())))}); });
+  });
+  return array_of(std::move(found)).reshape({rows.size(), metrics.size(), keys.size()});
 }
 
 /// Computes the data set of a study on that vehicle.
@@ -168,6 +198,7 @@ py::dict linearise(const Design<double>& design, const std::string& condition, s
 
 void add_studies(py::module_& m) {
   m.def("solve_columns", &solve_columns);
+  m.def("gradient_of_columns", &gradient_of_columns);
   m.def("sweep", &write_sweep);
   m.def("endurance", &endurance);
   m.def("identify_motor", &identify);

@@ -2,6 +2,7 @@
 
 import os
 import pathlib
+import pickle
 import signal
 import subprocess
 import sys
@@ -34,6 +35,32 @@ class Columns(unittest.TestCase):
         self.assertIn("locked", found.status)
         self.assertEqual(found.to_xarray().lift_mean.attrs["units"], "N")
         self.assertIn("locked", repr(found))
+
+    def test_gradients_are_those_of_each_design_alone(self):
+        vehicle = wb.read(DATA / "designs" / "friction2022-springs.toml")
+        columns = {"supply.voltage": np.linspace(0.2, 5.0, 21), "transmission.crank_radius": np.linspace(4e-3, 6e-3, 21)}
+        found = wb.solve(columns, vehicle=vehicle, tolerance=1e-9)
+        metrics, keys = ["lift_mean", "current_peak"], ["supply.voltage", "friction.radius", "spring.stiffness"]
+        reported = []
+        slopes = found.gradient(metrics, keys, progress=lambda done, designs: reported.append((done, designs)))
+        self.assertEqual(slopes.shape, (21, 2, 3))
+        np.testing.assert_array_equal(np.isnan(slopes).all(axis=(1, 2)), ~found.flapping)
+        for n in np.flatnonzero(found.flapping)[::4]:
+            row = {key: values[n] for key, values in columns.items()}
+            alone = vehicle.replace(row).solve(tolerance=1e-9)
+            for m, metric in enumerate(metrics):
+                np.testing.assert_allclose(slopes[n, m], alone.gradient(metric, keys), rtol=1e-6)
+        if reported:
+            self.assertLessEqual(reported[-1][0], reported[-1][1])
+        np.testing.assert_array_equal(found.gradient("lift_mean", keys[1]), slopes[:, 0, 1])
+        held = vehicle.solve_columns({"frequency": [20.0, 22.0]})
+        np.testing.assert_allclose(held.gradient("frequency", ["friction.radius"]), 0.0, atol=1e-4)
+        again = pickle.loads(pickle.dumps(held))
+        np.testing.assert_array_equal(again.gradient("voltage", keys), held.gradient("voltage", keys))
+        with self.assertRaisesRegex(wb.InputError, "did you mean lift_mean"):
+            found.gradient("lift_meen", keys)
+        with self.assertRaisesRegex(wb.InputError, "piezo"):
+            found.gradient("lift_mean", "piezo.force_per_volt")
 
     def test_a_whole_vehicle_in_columns(self):
         columns = {**dict(reference()), "supply.voltage": ["2 V", "3 V"]}

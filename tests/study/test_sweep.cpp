@@ -2,10 +2,15 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <vector>
 
 #include "vehicle/reference_vehicle.hpp"
+#include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/study/design_point.hpp"
 #include "wingbeat/study/run.hpp"
+#include "wingbeat/study/sweep_gradients.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
@@ -92,6 +97,34 @@ TEST(Sweep, HowItIsDividedDoesNotMatter) {
     for (std::size_t n = 0; n < 18; ++n) {
       const double a = whole.metrics[m][n], b = parts.metrics[m][n];
       EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b)));
+    }
+  }
+}
+
+TEST(Sweep, GradientsAreThoseOfItsDesigns) {
+  Sweep sweep = small_sweep();
+  sweep.options.tolerance = 1e-9;
+  const std::vector<DesignParameter> parameters = {design_parameter("friction.radius"),
+                                                   design_parameter("supply.voltage")};
+  const std::array metrics = {Metric::lift_mean, Metric::current_peak};
+  const std::array<std::uint64_t, 5> designs = {17, 4, 13, 10, 3};
+  double share = 0.0;
+  const std::vector<double> found =
+      sweep_gradients(sweep, designs, metrics, parameters, start_up_in_time(), {}, [&](double now) { share = now; });
+  EXPECT_EQ(share, 1.0);
+  ASSERT_EQ(found.size(), 20u);
+  const double* number = found.data();
+  for (const std::uint64_t n : designs) {
+    const bool flaps = n == 4 || n == 13 || n == 3;
+    DesignPointOptions options;
+    options.tolerance = 1e-9;
+    const DesignPoint point = design_point(design_at(sweep, n).design, options, parameters, start_up_in_time());
+    EXPECT_EQ(point.status == SweepStatus::flapping, flaps) << n;
+    for (const Metric m : metrics) {
+      for (std::size_t k = 0; k < parameters.size(); ++k, ++number) {
+        if (flaps) EXPECT_EQ(*number, point.gradients[k][std::size_t(m)]);
+        else EXPECT_TRUE(std::isnan(*number));
+      }
     }
   }
 }

@@ -62,6 +62,18 @@ def solve_columns(
     threads: int,
     progress: Callable[[int, int], object] | None,
 ) -> dict[str, Any]: ...
+def gradient_of_columns(
+    study: str,
+    base: Design,
+    columns: Sequence[Any],
+    count: int,
+    condition: str,
+    threads: int,
+    progress: Callable[[int, int], object] | None,
+    rows: Sequence[int],
+    metrics: Sequence[int],
+    keys: Sequence[str],
+) -> npt.NDArray[np.float64]: ...
 def sweep(
     study: str,
     vehicle: Design,

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import (
-    array, callback, mapping, number, optional_number, refused, text, threads_of, wrong_type,
+    array, callback, mapping, names, number, optional_number, refused, text, threads_of, wrong_type,
 )
 from ._operations import operation
 from ._progress import shown
@@ -47,7 +47,8 @@ class Ensemble:
     #: 1: by the scalar solver, 0: by the batched one.
     recomputed: npt.NDArray[np.int8]
 
-    def __init__(self, found: dict[str, Any]) -> None:
+    def __init__(self, found: dict[str, Any], inputs: tuple[Any, ...]) -> None:
+        self._inputs = inputs
         self.status_code = found["status"]
         self.domain_code = found["domain"]
         self.error_estimate = found["error_estimate"]
@@ -78,6 +79,58 @@ class Ensemble:
 
     def __dir__(self) -> list[str]:
         return sorted({*object.__dir__(self), *(metric_rows[k].name for k in self._columns)})
+
+    def gradient(
+        self,
+        metrics: str | list[str] | tuple[str, ...],
+        keys: str | list[str] | tuple[str, ...],
+        *,
+        threads: int = 0,
+        progress: bool | Callable[[int, int], object] | None = None,
+    ) -> npt.NDArray[np.float64]:
+        """Exact derivatives of metrics by numeric keys of the vehicle, of every design, on all cores.
+
+        The voltage is held; where the designs were solved at a frequency, the frequency is. NaN for designs that do not
+        flap and for metrics without derivatives (floquet_multiplier_max). The keys need not be columns.
+
+        Parameters
+        ----------
+        metrics : the name of a metric, or a list of names
+        keys : a key, or a list of keys
+        threads : at most so many; 0: one for each core
+        progress : True shows a bar, a function is called with designs done and designs
+
+        Returns
+        -------
+        An array (designs, metrics, keys), without the dimension of a metric or key that is named alone [unit of the
+        metric per unit of the key].
+
+        Raises
+        ------
+        InputError : for an unknown key or metric, and for a key without a value in a design that flaps
+
+        Example
+        -------
+        >>> vehicle = wb.read("data/designs/friction2022.toml")
+        >>> found = wb.solve_columns({"supply.voltage": [3, 4]}, vehicle=vehicle)
+        >>> np.round(found.gradient("frequency", ["supply.voltage", "friction.radius"]), 2)
+        array([[    5.67, -1374.37],
+               [    5.39, -1975.68]])
+        """
+        named = [text("metrics", metrics)] if isinstance(metrics, str) else names("metrics", metrics)
+        by = [text("keys", keys)] if isinstance(keys, str) else names("keys", keys)
+        indices = [metric_called(name) for name in named]
+        rows = np.flatnonzero(self.flapping)
+        study, vehicle, columns, count, condition = self._inputs
+        with shown(callback(progress), len(rows)) as tell:
+            found = _core.gradient_of_columns(
+                study, vehicle._design, columns, count, condition, threads_of(threads), tell, rows.tolist(), indices, by
+            )
+        every = np.full((len(self), len(named), len(by)), np.nan)
+        every[rows] = found
+        if isinstance(keys, str):
+            every = every[:, :, 0]
+        return every[:, 0] if isinstance(metrics, str) else every
 
     def to_xarray(self) -> xarray.Dataset:
         """All of it over the dimension `design`, with units and long names.
@@ -206,5 +259,6 @@ def solve_columns(
         row[key] = float(values[0]) if own is None else float(own)
     study = study_of_columns(row, tolerance=tolerance, metrics=metrics, frequency=held_frequency)
     with without_place("columns"), shown(callback(progress), count) as tell:
-        found = _core.solve_columns(study, vehicle._design, list(varied.values()), count, condition, threads, tell)
-    return Ensemble(found)
+        inputs = [column.copy() for column in varied.values()], count, condition
+        found = _core.solve_columns(study, vehicle._design, *inputs, threads, tell)
+    return Ensemble(found, (study, vehicle, *inputs))
