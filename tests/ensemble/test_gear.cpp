@@ -2,7 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <random>
+#include <string>
 
+#include "vehicle/kind_boxes.hpp"
 #include "vehicle/orbit_and_simulation.hpp"
 #include "vehicle/orbit_derivatives.hpp"
 #include "vehicle/random_vehicle.hpp"
@@ -235,6 +237,22 @@ TEST(GearEfficiency, EnsemblesKnowIt) {
     EXPECT_LT(outcomes[n].metrics[Metric::frequency], 0.99 * orbit_of(lossless, 1e-6).metrics[Metric::frequency]) << n;
   }
   EXPECT_LE(scalar, has_packs ? 2u : members.size());
+}
+
+// The torque on the gearbox changes sign where the rod force does and where friction and lever are as large: where
+// these are close to each other, it has the other sign for less than a step.
+TEST(GearEfficiency, SignChangesBesideThoseOfTheRodForce) {
+  std::mt19937_64 random(20225);
+  for (int n = 0; n <= 613; ++n) {
+    const Design<double> design = kind_design(KindBox::gear_loss, random);
+    if (n != 370 && n != 457 && n != 613) continue;
+    const Vehicle<double> v = resolve(design);
+    const SteadyFlapping exact = orbit_of(v, 1e-12);
+    for (const double tolerance : {1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10}) {
+      std::string where;
+      EXPECT_LT(metrics_apart(orbit_of(v, tolerance).metrics, exact.metrics, where), tolerance) << n << " " << where;
+    }
+  }
 }
 
 TEST(GearEfficiency, BadInputIsNamed) {

@@ -115,6 +115,16 @@ class IterateDriver {
         }
         x1 = x_ + step;
       }
+      if (dips_beside_end(step, result, last, flipped)) {
+        const std::size_t dips = crossed_switch(last, switch_count);
+        if (dips < switch_count && !locate(dips, step, result, last)) {
+          flip_here(dips);
+          continue;
+        }
+        flip = dips < switch_count;
+        flipped = dips;
+        x1 = x_ + step;
+      }
       note_others(step, result, last);
       iterate_.error_sum += error * options_.tolerance;
       accept(x1, step, result, last);
@@ -264,6 +274,28 @@ class IterateDriver {
     return false;
   }
 
+  /// A switch that is about zero at an end of the step, as where one with the same zero was crossed, may have the wrong
+  /// sign right beside it, before the first or behind the last stage; if so, shortens the step to end there.
+  bool dips_beside_end(double& step, StepResult<System>& result, Rates<System>& last, std::size_t ended_on) {
+    const double beside = std::clamp(position_tolerance_ / step, 1e-4, 0.1);
+    for (std::size_t k = 0; k < located_; ++k) {
+      if (k == ended_on || k == begun_on_ || jumps(system_, k)) continue;
+      const auto value = [&](double t) {
+        const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
+        return system_.template rates<false>(x_ + t * step, y, signs_).switches[k] * signs_[k];
+      };
+      const double near = 10.0 * position_tolerance_ * switch_scale_[k];
+      const auto dips = [&](double end, double at_end, double inwards) {
+        if (std::abs(at_end) > near || !(value(end + inwards * beside) < std::min(at_end, 0.0))) return false;
+        const double half = end + 0.5 * inwards;
+        const double lowest = minimise(value, std::min(end, half), std::max(end, half), 1e-3).argument;
+        return ends_between(lowest, step, result, last, ended_on);
+      };
+      if (dips(0.0, first_.switches[k] * signs_[k], 1.0) || dips(1.0, last.switches[k] * signs_[k], -1.0)) return true;
+    }
+    return false;
+  }
+
   /// If some switch has the wrong sign at the part t of a step, and at the end of a step that ends there, takes that.
   bool ends_between(double t, double& step, StepResult<System>& result, Rates<System>& last, std::size_t ended_on) {
     const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
@@ -384,6 +416,7 @@ class IterateDriver {
     configuration_ = result.end;
     first_ = last;
     flips_here_ = 0;
+    begun_on_ = switch_count;
     remember_integral_scale();
   }
 
@@ -410,6 +443,7 @@ class IterateDriver {
       signs_[k] = -signs_[k];
     }
     ++flips_here_;
+    begun_on_ = k;
     iterate_.switches.push_back({x_, k});
     // The other switches may have jumped over their zeros with the rates.
     if (jumps(system_, k)) settle_signs(system_, x_, y_, signs_);
@@ -435,6 +469,7 @@ class IterateDriver {
   std::size_t expected_ = 0;
   std::size_t fixed_ = 0;
   int flips_here_ = 0;
+  std::size_t begun_on_ = switch_count;  ///< flipped where the step begins
   double x_ = 0.0;
   ConfigurationOf<System> configuration_;  ///< at x_
   State y_;
