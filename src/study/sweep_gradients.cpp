@@ -19,15 +19,15 @@ std::vector<double> sweep_gradients(const Sweep& sweep, std::span<const std::uin
   std::vector<double> numbers(designs.size() * of_design, absent);
   const auto wants = [&](Metric m) { return std::find(metrics.begin(), metrics.end(), m) != metrics.end(); };
   const auto differentiate = [&](std::size_t n) {
-    const SweepDesign at = design_at(sweep, designs[n]);
+    const SweepDesign row = design_at(sweep, designs[n]);
     DesignPointOptions options;
-    options.condition = at.condition;
-    options.frequency = at.frequency;
+    options.condition = row.condition;
+    options.frequency = row.frequency;
     options.tolerance = sweep.options.tolerance;
     options.peaks = std::any_of(metrics.begin(), metrics.end(),
-                                [drive = drive_of(at.design)](Metric m) { return is_peak(m, drive); });
+                                [drive = drive_of(row.design)](Metric m) { return is_peak(m, drive); });
     options.flight = {wants(Metric::hover), wants(Metric::endurance), false};
-    const DesignPoint point = design_point(at.design, options, parameters, start_up);
+    const DesignPoint point = design_point(row.design, options, parameters, start_up);
     double* number = numbers.data() + n * of_design;
     for (const Metric m : metrics) {
       for (std::size_t k = 0; k < parameters.size(); ++k) *number++ = point.gradients[k][std::size_t(m)];

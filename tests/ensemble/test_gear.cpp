@@ -255,6 +255,18 @@ TEST(GearEfficiency, SignChangesBesideThoseOfTheRodForce) {
   }
 }
 
+// One step holds both: two sign changes of that torque, and between them all but a double zero.
+TEST(GearEfficiency, SignChangesNextToEachOther) {
+  std::mt19937_64 random(20225);
+  for (int n = 0; n < 3543; ++n) kind_design(KindBox::gear_loss, random);
+  const Vehicle<double> v = resolve(kind_design(KindBox::gear_loss, random));
+  const SteadyFlapping exact = orbit_of(v, 1e-12);
+  for (const double tolerance : {1e-5, 1e-6, 1e-7, 1e-8}) {
+    std::string where;
+    EXPECT_LT(metrics_apart(orbit_of(v, tolerance).metrics, exact.metrics, where), tolerance) << where;
+  }
+}
+
 TEST(GearEfficiency, BadInputIsNamed) {
   const auto refused = [](auto change) -> std::string {
     Design<double> d = reference_design();

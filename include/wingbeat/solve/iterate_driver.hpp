@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <tuple>
 #include <vector>
 
@@ -369,14 +370,23 @@ class IterateDriver {
     if (root < 1e-3 * position_tolerance_) return false;
     // The Hermite state is of lower order than the step: correct with steps that end at the switch.
     const int corrections = jumps(system_, k) ? 12 : 4;
-    double value_before = 0.0, moved = 0.0;
+    double value_before = 0.0, moved = 0.0, least = std::numeric_limits<double>::infinity(), best = root;
+    const auto end_at = [&](double to) {
+      step = to;
+      result = take_step<quadratures>(options_.method, system_, x_, y_, step, signs_, first_);
+      last = system_.template rates<quadratures>(result.end, result.y, signs_);
+    };
     for (int correction = 0; correction < corrections; ++correction) {
-      if (correction == 0 || !move_end(k, root, step, result, last)) {
-        step = root;
-        result = take_step<quadratures>(options_.method, system_, x_, y_, step, signs_, first_);
-        last = system_.template rates<quadratures>(result.end, result.y, signs_);
-      }
+      if (correction == 0 || !move_end(k, root, step, result, last)) end_at(root);
       const double signed_value = last.switches[k] * signs_[k];
+      if (std::abs(signed_value) > least) {
+        // Next to a second zero the slope says little.
+        root = 0.5 * (root + best);
+        moved = 0.0;
+        continue;
+      }
+      least = std::abs(signed_value);
+      best = root;
       if (corrections > 4 && moved != 0.0 && signed_value != value_before) {
         slope = (value_before - signed_value) / moved;
       }
@@ -386,6 +396,7 @@ class IterateDriver {
       moved = off;
       value_before = signed_value;
     }
+    if (std::abs(last.switches[k]) > least) end_at(best);
     return true;
   }
 
