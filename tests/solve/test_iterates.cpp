@@ -125,6 +125,40 @@ TEST(Iterate, TwoCrossingsWithinAStepAreFound) {
   expect_both_crossings(0.6, false);
 }
 
+/// y' = |a| + |a b| with a = sin(t - 2), b = sin(t - 2 - gap): a b has the other sign for the gap behind or before a
+/// zero of a.
+template <class S>
+struct NeighbouringZeros : TestSystem<S, 1, 1, 2> {
+  using Base = TestSystem<S, 1, 1, 2>;
+  double gap = 0.0;
+
+  template <bool quadratures>
+  Rates<NeighbouringZeros> rates(const S& t, const typename Base::State&, const typename Base::Signs& signs) const {
+    const S a = std::sin(t - 2.0), b = std::sin(t - 2.0 - gap);
+    Rates<NeighbouringZeros> r;
+    r.dy = {signs[0] * a + signs[1] * a * b};
+    r.switches = {a, a * b};
+    if constexpr (quadratures) r.dq = r.dy;
+    return r;
+  }
+  double exact() const { return 4.0 + pi * std::cos(gap) + 2.0 * std::abs(std::sin(gap) - gap * std::cos(gap)); }
+};
+
+TEST(Iterate, ZerosBesideThoseOfAnotherSwitchAreFound) {
+  for (const double gap : {0.3, 0.1, 0.03, 0.01, 0.003, 0.001, -0.001, -0.003, -0.01, -0.03, -0.1, -0.3}) {
+    NeighbouringZeros<double> system;
+    system.gap = gap;
+    for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10, 1e-11}) {
+      Iterate<NeighbouringZeros<double>> iterate;
+      for (int pass = 0; pass < 3; ++pass) {  // again with the switches that the iterate before expects
+        run_iterate<true>(system, {0.0}, {.tolerance = tolerance}, iterate);
+        ASSERT_EQ(iterate.status, IterateStatus::complete);
+        EXPECT_NEAR(iterate.end[0], system.exact(), 10.0 * tolerance) << "gap " << gap << ", tolerance " << tolerance;
+      }
+    }
+  }
+}
+
 TEST(Iterate, FixedNodesEndStepsAndFlipTheirSign) {
   const FixedNodeSystem<double> system;
   Iterate<FixedNodeSystem<double>> iterate;

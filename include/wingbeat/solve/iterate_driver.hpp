@@ -32,6 +32,8 @@ class IterateDriver {
         iterate_(iterate),
         located_(std::min(switch_count, std::size_t(options.switches))),
         position_tolerance_(switch_tolerance(options.tolerance)),
+        // A dip of a depth d, in which a branch is off by as much, is as long as sqrt(d): the error is its 3/2 power.
+        dip_depth_(std::min(1e-6, std::pow(0.1 * options.tolerance, 2.0 / 3.0))),
         error_exponent_(options.method == Method::explicit_pair ? -1.0 / dop853::order
                                                                 : -1.0 / RadauTableau::error_order) {}
 
@@ -257,7 +259,7 @@ class IterateDriver {
     if (step < 4.0 * position_tolerance_) return false;
     bool seen = false;
     for (std::size_t k = 0; k < located_; ++k) {
-      seen = seen || (k != ended_on && result.lowest[k] < -1e-6 * switch_scale_[k]);
+      seen = seen || (k != ended_on && result.lowest[k] < -dip_depth_ * switch_scale_[k]);
     }
     if (seen) {
       for (const double t : {0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875, 0.9375}) {
@@ -270,7 +272,7 @@ class IterateDriver {
       const double ends = std::min(first_.switches[k] * signs_[k], last.switches[k] * signs_[k]);
       const bool comes_near = result.lowest[k] < std::min(0.05 * switch_scale_[k], 0.8 * ends);
       if (k == ended_on || !comes_near) continue;
-      if (ends_between(lowest_within(k, step, result, last), step, result, last, ended_on)) return true;
+      if (ends_between(lowest_within(k, 0.0, 1.0, step, result, last), step, result, last, ended_on)) return true;
     }
     return false;
   }
@@ -278,31 +280,30 @@ class IterateDriver {
   /// A switch that is about zero at an end of the step, as where one with the same zero was crossed, may have the wrong
   /// sign right beside it, before the first or behind the last stage; if so, shortens the step to end there.
   bool dips_beside_end(double& step, StepResult<System>& result, Rates<System>& last, std::size_t ended_on) {
-    const double beside = std::clamp(position_tolerance_ / step, 1e-4, 0.1);
     for (std::size_t k = 0; k < located_; ++k) {
       if (k == ended_on || k == begun_on_ || jumps(system_, k)) continue;
-      const auto value = [&](double t) {
-        const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
-        return system_.template rates<false>(x_ + t * step, y, signs_).switches[k] * signs_[k];
+      const auto dips = [&](double at_end, double place, double from, double to) {
+        return is_about_zero(at_end, k) && switch_inside(k, place, step, result, last) < std::min(at_end, 0.0) &&
+               ends_between(lowest_within(k, from, to, step, result, last), step, result, last, ended_on);
       };
-      const double near = 10.0 * position_tolerance_ * switch_scale_[k];
-      const auto dips = [&](double end, double at_end, double inwards) {
-        if (std::abs(at_end) > near || !(value(end + inwards * beside) < std::min(at_end, 0.0))) return false;
-        const double half = end + 0.5 * inwards;
-        const double lowest = minimise(value, std::min(end, half), std::max(end, half), 1e-3).argument;
-        return ends_between(lowest, step, result, last, ended_on);
-      };
-      if (dips(0.0, first_.switches[k] * signs_[k], 1.0) || dips(1.0, last.switches[k] * signs_[k], -1.0)) return true;
+      if (dips(first_.switches[k] * signs_[k], beside(step), 0.0, 0.5)) return true;
+      if (dips(last.switches[k] * signs_[k], 1.0 - beside(step), 0.5, 1.0)) return true;
     }
     return false;
   }
+
+  /// At an end of a step, where another zero may be beside(), that part of the step away.
+  bool is_about_zero(double value, std::size_t k) const {
+    return std::abs(value) <= 10.0 * position_tolerance_ * switch_scale_[k];
+  }
+  double beside(double step) const { return std::clamp(position_tolerance_ / step, 1e-4, 0.1); }
 
   /// If some switch has the wrong sign at the part t of a step, and at the end of a step that ends there, takes that.
   bool ends_between(double t, double& step, StepResult<System>& result, Rates<System>& last, std::size_t ended_on) {
     const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
     const Rates<System> inside = system_.template rates<false>(x_ + t * step, y, signs_);
     for (std::size_t k = 0; k < located_; ++k) {
-      if (k == ended_on || inside.switches[k] * signs_[k] >= -1e-6 * switch_scale_[k]) continue;
+      if (k == ended_on || inside.switches[k] * signs_[k] >= -dip_depth_ * switch_scale_[k]) continue;
       const double shorter = t * step;
       const StepResult<System> again =
           take_step<quadratures>(options_.method, system_, x_, y_, shorter, signs_, first_);
@@ -317,13 +318,17 @@ class IterateDriver {
     return false;
   }
 
-  /// Part of a step at which switch k is lowest.
-  double lowest_within(std::size_t k, double step, const StepResult<System>& result, const Rates<System>& last) {
-    const auto value = [&](double t) {
-      const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
-      return system_.template rates<false>(x_ + t * step, y, signs_).switches[k] * signs_[k];
-    };
-    return minimise(value, 0.0, 1.0, 1e-3).argument;
+  /// Switch k at the part t of a step, by the cubic through its ends; positive where it has its sign.
+  double switch_inside(std::size_t k, double t, double step, const StepResult<System>& result,
+                       const Rates<System>& last) const {
+    const State y = hermite<System>(y_, first_.dy, result.y, last.dy, step, t);
+    return system_.template rates<false>(x_ + t * step, y, signs_).switches[k] * signs_[k];
+  }
+
+  /// Part of a step at which switch k is lowest, between two parts.
+  double lowest_within(std::size_t k, double from, double to, double step, const StepResult<System>& result,
+                       const Rates<System>& last) const {
+    return minimise([&](double t) { return switch_inside(k, t, step, result, last); }, from, to, 1e-3).argument;
   }
 
   /// Shortens the step to end where switch k changes sign; false if that is at its very start.
@@ -338,11 +343,21 @@ class IterateDriver {
     // Illinois: keeps the bracket, converges superlinearly.
     double lo = 0.0, hi = whole;
     double f_lo = first_.switches[k] * signs_[k], f_hi = last.switches[k] * signs_[k];
-    if (f_lo <= 1e-15 * switch_scale_[k]) {
+    if (is_about_zero(f_lo, k) && value(beside(whole) * whole) > std::max(f_lo, 0.0)) {
+      // The switch begins next to a zero of its own: what is sought lies beyond the rise from there.
+      lo = minimise([&](double advance) { return -value(advance); }, 0.0, 0.5 * whole, 1e-3 * whole).argument;
+      f_lo = value(lo);
+      if (!(f_lo > 0.0)) lo = beside(whole) * whole, f_lo = value(lo);
+    } else if (f_lo <= 1e-15 * switch_scale_[k]) {
       // A sign may have been flipped a little before its zero: look past it.
       lo = std::min(2.0 * position_tolerance_, 0.5 * whole);
       f_lo = value(lo);
       if (f_lo <= 0.0) return false;
+    }
+    // So the end may be a little beyond another zero, between which and the one sought the switch is lower.
+    if (is_about_zero(f_hi, k) && value((1.0 - beside(whole)) * whole) < f_hi) {
+      hi = lowest_within(k, 0.5, 1.0, whole, result, last) * whole;
+      f_hi = value(hi);
     }
     const double close_enough = 0.1 * position_tolerance_;
     double root = hi, slope = (f_hi - f_lo) / whole;
@@ -475,6 +490,7 @@ class IterateDriver {
   Iterate<System>& iterate_;
   const std::size_t located_;
   const double position_tolerance_;
+  const double dip_depth_;  ///< that counts, of a switch's largest magnitude
   const double error_exponent_;
   std::vector<SwitchNode> plan_;
   std::size_t expected_ = 0;
