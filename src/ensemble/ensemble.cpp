@@ -78,7 +78,7 @@ struct PackKind {
   bool stiff;
   TransmissionType transmission;
   Kinks kinks;
-  bool gear_loss, load_free_friction, coefficient_table, pitch_stop;
+  bool gear_loss, load_free_friction, pitch_stop;
   bool added_mass, virtual_work, springs;
   PackCurrent current;
 
@@ -184,7 +184,6 @@ class EnsembleRun {
                                                    : Kinks::none,
             .gear_loss = loses,
             .load_free_friction = v.friction.torque > 0.0 || v.friction.damping > 0.0,
-            .coefficient_table = table,
             .pitch_stop = stop,
             .added_mass = v.wings.added_inertia > 0.0,
             .virtual_work = v.transmission.slider_crank.formulation == Formulation::virtual_work,

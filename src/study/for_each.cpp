@@ -13,7 +13,7 @@ void run_tasks(const std::vector<std::function<void()>>& tasks, const ForEach& f
                const std::function<void(double)>& done) {
   std::mutex mutex;
   std::size_t finished = 0;
-  for_each(tasks.size(), [&](std::size_t n) {
+  for_all(for_each, tasks.size(), [&](std::size_t n) {
     tasks[n]();
     const std::lock_guard<std::mutex> lock(mutex);
     if (done) done(double(++finished) / double(tasks.size()));

@@ -1,7 +1,6 @@
 #include "wingbeat/study/sweep_gradients.hpp"
 
 #include <algorithm>
-#include <string>
 
 #include "wingbeat/cycle/metric_gradients.hpp"
 #include "wingbeat/study/design_point.hpp"
@@ -39,8 +38,7 @@ std::vector<double> sweep_gradients(const Sweep& sweep, std::span<const std::uin
       for (std::size_t n = first; n < last; ++n) differentiate(n);
     });
   }
-  const ForEach one_by_one = [](std::size_t count, const auto& act) { for_all({}, count, act); };
-  run_tasks(tasks, for_each ? for_each : one_by_one, done);
+  run_tasks(tasks, for_each, done);
   return numbers;
 }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "wingbeat/core/math.hpp"
-#include "wingbeat/core/pack.hpp"
+#include "wingbeat/core/scalar.hpp"
 #include "wingbeat/parts/any_transmission.hpp"
 
 namespace wingbeat {

@@ -52,8 +52,8 @@ void solve_block(const EnsembleMember* const* members, int count, const PackSett
         return L::load(numbers);
       };
       for (std::size_t half = 0; half < 2; ++half) {
-        mechanism.middle[half] = of_turns([half](const HalfTurns& h) { return (&h.middle[0])[half]; });
-        mechanism.reach[half] = of_turns([half](const HalfTurns& h) { return (&h.reach[0])[half]; });
+        mechanism.middle[half] = of_turns([half](const HalfTurns& h) { return h.middle[half]; });
+        mechanism.reach[half] = of_turns([half](const HalfTurns& h) { return h.reach[half]; });
       }
       LaneCurves<L>& curves = vehicle.transmission.tabulated.curve;
       for (int lane = 0; lane < L::lanes; ++lane) curves.of_lane[lane] = turns[lane].curve;

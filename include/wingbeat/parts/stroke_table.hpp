@@ -133,7 +133,7 @@ CrankKinematics<S> kinematics_at_angle(const StrokeTable<S>& t, const S& theta)
   for (std::size_t lane = 0; lane < lanes; ++lane) {
     const StrokeCurve::Piece& p = t.curve.of_lane[lane]->piece(position[lane]);
     position[lane] -= p.x0;
-    for (int n = 0; n < 6; ++n) coefficient[n][lane] = (&p.coefficient[0])[n];
+    for (std::size_t n = 0; n < 6; ++n) coefficient[n][lane] = p.coefficient[n];
   }
   const S x = S::load(position);
   S beta = S::load(coefficient[5]), slope(0.0), half_curve(0.0);  // by Horner's scheme

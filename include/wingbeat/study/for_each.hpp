@@ -13,8 +13,8 @@ using ForEach = std::function<void(std::size_t count, const std::function<void(s
 /// Calls `act` by `for_each`; one after another where there is none.
 void for_all(const ForEach& for_each, std::size_t count, const std::function<void(std::size_t)>& act);
 
-/// Runs all tasks; `done`, if given, is called with the share of them that has finished, 0 to 1, by one thread at a
-/// time.
+/// Runs all tasks by `for_each`, one after another where there is none; `done`, if given, is called with the share of
+/// them that has finished, 0 to 1, by one thread at a time.
 void run_tasks(const std::vector<std::function<void()>>& tasks, const ForEach& for_each,
                const std::function<void(double)>& done);
 
