@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "vehicle/kind_boxes.hpp"
+#include "wingbeat/core/pack.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
