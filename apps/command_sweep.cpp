@@ -123,13 +123,15 @@ std::string summary(const Study& study, const SweepResult& result) {
                    rate(double(p.computed), p.seconds));
   }
   text += '\n';
-  constexpr const char* meanings[sweep_status_count] = {"",
-                                                        "the motor never starts",
-                                                        "the crank comes to rest at an angle",
-                                                        "the equations of motion lose their unique solution on the way",
-                                                        "flapping, but not at the frequency asked for",
-                                                        "a parameter out of its range beside the others",
-                                                        "start-up came to no end within the solvers' limits"};
+  const char* const meanings[sweep_status_count] = {"",
+                                                    "the motor never starts",
+                                                    "the crank comes to rest at an angle",
+                                                    "the equations of motion lose their unique solution on the way",
+                                                    sweep.hold && sweep.hold->held != Held::frequency
+                                                        ? "flapping, but without the lift asked for"
+                                                        : "flapping, but not at the frequency asked for",
+                                                    "a parameter out of its range beside the others",
+                                                    "start-up came to no end within the solvers' limits"};
   for (int s = 0; s < sweep_status_count; ++s) {
     const std::uint64_t n = digest.designs[std::size_t(s)];
     if (n == 0 && s > 0) continue;

@@ -165,14 +165,21 @@ bool unreached(const RunResult& result) {
 }
 
 py::dict run(const Design<double>& design, const std::string& condition, const std::string& method, double tolerance,
-             std::optional<double> frequency, std::optional<double> lift, bool allow_extrapolation, int points,
-             bool endurance) {
+             std::optional<double> frequency, std::optional<double> lift, std::optional<double> lift_to_weight,
+             bool allow_extrapolation, int points, bool endurance) {
   RunOptions options;
   options.condition = choice<Condition>("condition", condition);
   options.method = choice<Method>("method", method);
   require_tolerance(options.tolerance = tolerance);
   options.frequency = frequency;
   options.lift = lift;
+  if (lift_to_weight) {
+    require(*lift_to_weight > 0.0, "lift_to_weight", "must be > 0", "1", *lift_to_weight);
+    const Reporting reporting = reporting_of(design);
+    if (std::isnan(reporting.mass))
+      throw ParameterError("lift_to_weight", "needs vehicle.mass, which the vehicle does not give");
+    options.lift = held_lift({Held::lift_to_weight, *lift_to_weight}, reporting);
+  }
   options.allow_extrapolation = allow_extrapolation;
   options.waveform_rows = points;
   options.endurance = endurance;
@@ -197,11 +204,15 @@ py::dict balance(const py::array_t<double>& values) {
 }
 
 py::dict differentiate(const Design<double>& design, const std::vector<std::string>& keys, const std::string& condition,
-                       double tolerance, std::optional<double> frequency, bool endurance) {
+                       double tolerance, const std::string& held, double held_value, bool allow_extrapolation,
+                       bool endurance) {
   DesignPointOptions options;
   options.condition = choice<Condition>("condition", condition);
   require_tolerance(options.tolerance = tolerance);
-  options.frequency = frequency;
+  const SearchRange range = search_range(allow_extrapolation);
+  if (held == "frequency") options.hold = Hold{Held::frequency, held_value};
+  if (held == "lift") options.hold = Hold{Held::lift, held_value, range};
+  if (held == "lift_to_weight") options.hold = Hold{Held::lift_to_weight, held_value, range};
   options.flight = {endurance, endurance, false};
   const DesignPoint found = listening([&] { return gradient(design, keys, options); });
   py::array_t<double> slopes({keys.size(), std::size_t(metric_count)});
@@ -334,9 +345,10 @@ PYBIND11_MODULE(_core, m) {
   m.def("domain_name", [](int bits) { return name_of(DomainStatus(std::uint64_t(bits))); });
   m.def("quantity", &quantity);
   m.def("quantity_example", [](const std::string& unit) { return quantity_example(unit); });
-  m.def("run", &run, "design"_a, "condition"_a, "method"_a, "tolerance"_a, "frequency"_a, "lift"_a,
+  m.def("run", &run, "design"_a, "condition"_a, "method"_a, "tolerance"_a, "frequency"_a, "lift"_a, "lift_to_weight"_a,
         "allow_extrapolation"_a, "points"_a, "endurance"_a);
-  m.def("gradient", &differentiate, "design"_a, "keys"_a, "condition"_a, "tolerance"_a, "frequency"_a, "endurance"_a);
+  m.def("gradient", &differentiate, "design"_a, "keys"_a, "condition"_a, "tolerance"_a, "held"_a, "held_value"_a,
+        "allow_extrapolation"_a, "endurance"_a);
   m.def("mechanism_svg", &mechanism_svg, "design"_a, "stroke_amplitude"_a, py::call_guard<Left>());
   m.def("energy_balance", &balance);
   m.def("simulate", &start_up);

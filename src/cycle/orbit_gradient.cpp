@@ -84,12 +84,12 @@ OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle&
   if (runs_away) g.regular = false;
   else if (warm) follow_temperatures(orbit, vehicle, given, options, g);
 
-  if (options.held == Held::frequency && voltage_varies) {
-    const J f = g.metrics[Metric::frequency];
-    if (!(std::abs(f.v[gradient_voltage_slot]) > 0.0)) g.regular = false;
+  if (options.held != Held::voltage && voltage_varies) {
+    const J held = g.metrics[metric_of(options.held)];
+    if (!(std::abs(held.v[gradient_voltage_slot]) > 0.0)) g.regular = false;
     const auto follow = [&](J& x) {
       for (int k = gradient_first_slot; k < slots; ++k) {
-        x.v[k] -= x.v[gradient_voltage_slot] * f.v[k] / f.v[gradient_voltage_slot];
+        x.v[k] -= x.v[gradient_voltage_slot] * held.v[k] / held.v[gradient_voltage_slot];
       }
       x.v[gradient_voltage_slot] = 0.0;
     };
@@ -132,6 +132,24 @@ GradientVehicle gradient_vehicle(const Design<GradientJet>& design, Condition co
   return v;
 }
 
+namespace {
+
+/// Lets a direct drive's voltage follow, so that a metric is held: it has no slot of its own.
+void follow_amplitude(GradientVehicle vehicle, const SteadyFlapping& orbit, const GradientOptions& options,
+                      MetricGradients& result) {
+  vehicle.vehicle.voltage = gradient_seed(orbit.record.vehicle().voltage, 0);
+  const OrbitGradient g = orbit_gradient(orbit, vehicle, {Held::voltage, options.peaks, {}});
+  const auto slope = [&](std::size_t m) { return g.metrics.values[m].v[gradient_first_slot]; };
+  const std::size_t held = std::size_t(metric_of(options.held));
+  result.regular = result.regular && g.regular && std::abs(slope(held)) > 0.0;
+  for (auto& gradient : result.by_parameter) {
+    const double follows = gradient[held] / slope(held);
+    for (std::size_t m = 0; m < metric_count; ++m) gradient[m] -= slope(m) * follows;
+  }
+}
+
+}  // namespace
+
 MetricGradients metric_gradients(const Design<double>& design, Condition condition, const SteadyFlapping& orbit,
                                  std::span<const DesignParameter> parameters, const GradientOptions& options) {
   MetricGradients result;
@@ -162,6 +180,9 @@ MetricGradients metric_gradients(const Design<double>& design, Condition conditi
         result.by_parameter[first + k][m] = derivative[gradient_first_slot + Eigen::Index(k)];
       }
     }
+  }
+  if (!drive_of(design).voltage_sets_frequency && options.held != Held::voltage && options.held != Held::frequency) {
+    follow_amplitude(gradient_vehicle(plain, condition), orbit, options, result);
   }
   return result;
 }

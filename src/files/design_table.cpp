@@ -99,8 +99,8 @@ std::vector<int> parse_design_table(std::string_view text, const std::string& fi
         throw InputError(file, line_number, cells[n].column, q.key,
                          fmt::format("expected a number, got {}", in_quotes(cells[n].text)));
       }
-      if (q.kind == SweptQuantity::Kind::frequency && !(q.values.back() > 0.0)) {
-        throw InputError(file, line_number, cells[n].column, q.key, "must be > 0 Hz");
+      if (q.kind == SweptQuantity::Kind::held && !(q.values.back() > 0.0)) {
+        throw InputError(file, line_number, cells[n].column, q.key, must_be_positive(q.unit));
       }
     }
     lines.push_back(line_number);

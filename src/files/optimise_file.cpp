@@ -46,7 +46,7 @@ class OptimiseReader : public detail::StudySections {
     attempt([&] { counts_after_hover_ = after_hover && boolean(*after_hover, "study.count_after_hover"); });
     if (!attempt([&] { study.design = read_vehicle(folder_); })) finish();  // the rest is read for this vehicle
     file.vehicle_file = find_vehicle(folder_, vehicle_file());
-    attempt([&] { study.options.frequency = read_frequency(study.design); });
+    attempt([&] { study.options.hold = read_hold(study.design); });
     const bool motors_read = attempt([&] {
       if (const TomlNode* motors = root_.find("motors")) read_motors(*motors, file);
     });

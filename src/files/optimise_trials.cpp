@@ -53,7 +53,7 @@ ParetoStudy pareto_study(const OptimiseFile& file) {
   }
   if (study.vehicles.empty()) study.vehicles.push_back({"", file.study.design});
   study.condition = file.study.options.condition;
-  study.frequency = file.study.options.frequency;
+  study.hold = file.study.options.hold;
   study.tolerance = file.study.options.tolerance;
   study.objectives = file.objectives;
   study.parameters = file.study.parameters;

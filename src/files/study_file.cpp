@@ -50,10 +50,7 @@ class StudyReader : public detail::StudySections {
     attempt([&] { sweep_->allow_extrapolation = read_allow_extrapolation(); });
     attempt([&] { read_metrics(sweep_->options); });
     attempt([&] {
-      if (held_frequency_) sweep_->frequency = quantity(*held_frequency_, "study.hold.frequency", "Hz");
-      if (sweep_->frequency && !(*sweep_->frequency > 0.0)) {
-        refuse(*held_frequency_, "study.hold.frequency", "must be > 0 Hz");
-      }
+      if (held_target_) sweep_->hold = held_target();
     });
     attempt([&] { read_axes(); });
     attempt([&] {
@@ -77,7 +74,8 @@ class StudyReader : public detail::StudySections {
 
   /// What is varied under that name. `where` is the key of the study file that gives the name.
   SweptQuantity quantity_named(const TomlNode& node, const std::string& where) {
-    if (node.kind != Kind::text) wrong(node, where, "a vehicle-file key, \"frequency\", \"condition\" or \"springs\"");
+    if (node.kind != Kind::text)
+      wrong(node, where, "a vehicle-file key, \"frequency\", \"lift\", \"condition\" or \"springs\"");
     SweptQuantity q;
     q.key = node.text;
     q.name = q.key;
@@ -87,12 +85,16 @@ class StudyReader : public detail::StudySections {
     if (!used_.insert(q.key).second) refuse(node, where, fmt::format("{} is varied already", q.key));
     if (set_.contains(q.key)) refuse(node, where, fmt::format("{} is given in [set] already", q.key));
     no_override_of(q.key, "has no effect: the study varies it");
-    if (q.key == "frequency") {
-      q.kind = SweptQuantity::Kind::frequency;
-      q.unit = "Hz";
-      q.meaning = "flapping frequency asked for";
-      if (held_frequency_) refuse(node, where, "study.hold holds the frequency already");
-      if (held_voltage_) refuse(node, where, "study.hold holds the voltage, which then sets the frequency");
+    if (const detail::HeldKey* held = detail::held_key(q.key)) {
+      q.kind = SweptQuantity::Kind::held;
+      q.name = held->axis;
+      q.unit = held->unit;
+      q.meaning = fmt::format("{} asked for", held->held == Held::frequency ? "flapping frequency" : held->name);
+      if (held_target_) refuse(node, where, fmt::format("study.hold holds the {} already", held_key_->name));
+      if (held_voltage_)
+        refuse(node, where, fmt::format("study.hold holds the voltage, which then sets the {}", held->name));
+      if (sweep_->hold) refuse(node, where, "another axis gives what is held");
+      sweep_->hold = Hold{held->held};
     } else if (q.key == "condition") {
       q.kind = SweptQuantity::Kind::choice;
       q.meaning = "environment: air, vacuum or without wings";
@@ -100,7 +102,7 @@ class StudyReader : public detail::StudySections {
       q.kind = SweptQuantity::Kind::choice;
       q.meaning = "hinge springs on or off";
     } else if (!key) {
-      const std::string_view own[] = {"frequency", "condition", "springs"};
+      const std::string_view own[] = {"frequency", "lift", "lift_to_weight", "condition", "springs"};
       const std::string_view near = nearest_name(q.key, own);
       refuse(
           node, where,
@@ -135,7 +137,9 @@ class StudyReader : public detail::StudySections {
       return;
     }
     const double x = quantity(node, where, q.unit);
-    if (q.kind == SweptQuantity::Kind::frequency && !(x > 0.0)) refuse(node, where, "must be > 0 Hz");
+    if (q.kind == SweptQuantity::Kind::held && !(x > 0.0)) {
+      refuse(node, where, detail::must_be_positive(q.unit));
+    }
     q.values.push_back(x);
   }
 
@@ -244,8 +248,8 @@ class StudyReader : public detail::StudySections {
     q.high = quantity(to, section + ".to", q.unit);
     q.logarithmic = logarithmic(node, section);
     if (q.low == q.high) refuse(to, section + ".to", "is the value of from");
-    const bool positive = q.logarithmic || q.kind == SweptQuantity::Kind::frequency;
-    const char* why = q.logarithmic ? "must be > 0 on a logarithmic scale" : "must be > 0 Hz";
+    const bool positive = q.logarithmic || q.kind == SweptQuantity::Kind::held;
+    const std::string why = q.logarithmic ? "must be > 0 on a logarithmic scale" : detail::must_be_positive(q.unit);
     if (positive && !(q.low > 0.0)) refuse(from, section + ".from", why);
     if (positive && !(q.high > 0.0)) refuse(to, section + ".to", why);
   }

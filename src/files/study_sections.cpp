@@ -41,7 +41,7 @@ StudySections::StudySections(std::string name, std::string_view text, std::span<
                with({"vehicle", "title", "tolerance", "metrics", "hold", "allow_extrapolation"}, keys));
   });
   if (!study_ || study_->kind != Kind::table) finish();
-  attempt([&] { read_hold(); });
+  attempt([&] { find_hold(); });
   attempt([&] { check_overrides(); });
 }
 
@@ -149,24 +149,33 @@ void StudySections::check_overrides() const {
   for (const char* key : {"supply.voltage", "supply.amplitude"}) {
     if (held_voltage_) no_override_of(key, "has no effect: study.hold holds the voltage");
   }
-  if (held_frequency_) no_override_of("supply.voltage", "has no effect: study.hold holds the frequency");
+  if (held_target_) {
+    no_override_of("supply.voltage", fmt::format("has no effect: study.hold holds the {}", held_key_->name));
+  }
 }
 
 // ---- [study] and [set]
 
-void StudySections::read_hold() {
+void StudySections::find_hold() {
   if (const TomlNode* set = root_.find("set")) {
     if (set->kind != Kind::table) wrong(*set, "set", "a section [set] of vehicle-file keys");
     flatten(*set, "");
   }
   const TomlNode* hold = study_->find("hold");
   if (!hold) return;
-  if (hold->kind != Kind::table) wrong(*hold, "study.hold", "{ voltage = \"3 V\" } or { frequency = \"22 Hz\" }");
-  known_keys(*hold, "study.hold", {"voltage", "frequency"});
+  if (hold->kind != Kind::table)
+    wrong(*hold, "study.hold", "{ voltage = \"3 V\" }, { frequency = \"22 Hz\" } or { lift_to_weight = 1 }");
+  known_keys(*hold, "study.hold", {"voltage", "frequency", "lift", "lift_to_weight"});
   held_voltage_ = hold->find("voltage");
-  held_frequency_ = hold->find("frequency");
-  if (bool(held_voltage_) == bool(held_frequency_)) {
-    refuse(*hold, "study.hold", "give one of voltage and frequency");
+  for (const HeldKey& key : held_keys) {
+    const TomlNode* target = hold->find(std::string(key.key));
+    if (!target) continue;
+    if (held_target_) refuse(*target, "study.hold", fmt::format("holds the {} already", held_key_->name));
+    held_target_ = target;
+    held_key_ = &key;
+  }
+  if (bool(held_voltage_) == bool(held_target_)) {
+    refuse(*hold, "study.hold", "give one of voltage, frequency, lift and lift_to_weight");
   }
   if (held_voltage_ && !(quantity(*held_voltage_, "study.hold.voltage", "V") >= 0.0)) {
     refuse(*held_voltage_, "study.hold.voltage", "must be >= 0 V");
@@ -271,17 +280,50 @@ bool swings_a_crank(const Design<double>& design) {
   return design.supply.type == SupplyType::sine && !drive_of(design).alternating;
 }
 
-std::optional<double> StudySections::read_frequency(const Design<double>& design) const {
+std::optional<Hold> StudySections::read_hold(const Design<double>& design) const {
   if (swings_a_crank(design)) {
     const auto given = set_.find("supply.type");
     refuse(given == set_.end() ? need(*study_, "study", "vehicle", "") : *given->second, "supply.type",
            no_swinging_crank);
   }
-  if (!held_frequency_) return std::nullopt;
-  if (design.supply.type == SupplyType::battery) refuse(*held_frequency_, "study.hold.frequency", no_held_frequency);
-  const double f = quantity(*held_frequency_, "study.hold.frequency", "Hz");
-  if (!(f > 0.0)) refuse(*held_frequency_, "study.hold.frequency", "must be > 0 Hz");
-  return f;
+  if (!held_target_) return std::nullopt;
+  const std::string why = no_hold(*held_key_, design);
+  if (!why.empty()) refuse(*held_target_, within("study.hold", held_key_->key), why);
+  return held_target();
+}
+
+Hold StudySections::held_target() const {
+  const std::string key = within("study.hold", held_key_->key);
+  const double value = quantity(*held_target_, key, held_key_->unit);
+  if (!(value > 0.0)) {
+    refuse(*held_target_, key, must_be_positive(held_key_->unit));
+  }
+  return {held_key_->held, value};
+}
+
+std::string must_be_positive(std::string_view unit) {
+  return unit == "1" ? "must be > 0" : fmt::format("must be > 0 {}", unit);
+}
+
+const HeldKey* held_key(std::string_view key) {
+  for (const HeldKey& k : held_keys) {
+    if (k.key == key) return &k;
+  }
+  return nullptr;
+}
+
+std::string no_hold(const HeldKey& key, const Design<double>& design) {
+  if (design.supply.type == SupplyType::battery) {
+    return fmt::format("the charge of a battery gives its voltage, so none can be found for a {}", key.name);
+  }
+  if (key.held == Held::lift_to_weight && !total_mass(design)) return "the vehicle states no mass; give vehicle.mass";
+  return "";
+}
+
+bool is_void_at(const HeldKey& held, std::string_view key, const Design<double>& design) {
+  const bool voltage = key == "supply.voltage" || key == "supply.duty" || key == "supply.amplitude";
+  if (held.held != Held::frequency || drive_of(design).voltage_sets_frequency) return voltage;
+  return key == "supply.frequency" || key == "supply.resonance_ratio";
 }
 
 DesignParameter StudySections::parameter_named(const TomlNode& node, const std::string& where,
@@ -298,10 +340,8 @@ DesignParameter StudySections::parameter_named(const TomlNode& node, const std::
   }
   const bool voltage = key == "supply.voltage" || key == "supply.duty" || key == "supply.amplitude";
   if (voltage && held_voltage_) refuse(node, where, "study.hold holds the voltage already");
-  const bool sets_frequency =
-      drive_of(design).voltage_sets_frequency ? voltage : key == "supply.frequency" || key == "supply.resonance_ratio";
-  if (sets_frequency && held_frequency_) {
-    refuse(node, where, fmt::format("{} has no effect where the frequency is held", key));
+  if (held_target_ && is_void_at(*held_key_, key, design)) {
+    refuse(node, where, fmt::format("{} has no effect where the {} is held", key, held_key_->name));
   }
   if (!parameter.value(design)) {
     const std::string_view only_with = find_parameter<double>(key)->only_with;

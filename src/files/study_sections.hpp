@@ -18,6 +18,7 @@
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/study/hold.hpp"
 
 namespace wingbeat::detail {
 
@@ -30,8 +31,28 @@ std::string reason_of(const InputError& error);
 bool swings_a_crank(const Design<double>& design);
 inline constexpr const char* no_swinging_crank =
     "a sine supply gives no steady flapping in crank angle; expected constant or pwm";
-inline constexpr const char* no_held_frequency =
-    "the charge of a battery gives its voltage, so none can be found for a frequency";
+
+/// What can be held beside the voltage: a key of study.hold, and an axis of a sweep.
+struct HeldKey {
+  std::string_view key;
+  Held held;
+  const char* unit;  ///< SI
+  const char* name;  ///< in words
+  const char* axis;  ///< of its variable in a data set, where no metric is called so
+};
+inline constexpr HeldKey held_keys[] = {
+    {"frequency", Held::frequency, "Hz", "frequency", "frequency"},
+    {"lift", Held::lift, "N", "mean lift", "lift"},
+    {"lift_to_weight", Held::lift_to_weight, "1", "lift over the weight", "held_lift_to_weight"},
+};
+/// Of a value to be held.
+std::string must_be_positive(std::string_view unit);
+/// Null where the key is none of them.
+const HeldKey* held_key(std::string_view key);
+/// Why a vehicle's supply or mass allows no such hold; empty where it does.
+std::string no_hold(const HeldKey& key, const Design<double>& design);
+/// Whether a key of the vehicle has no effect where that is held.
+bool is_void_at(const HeldKey& held, std::string_view key, const Design<double>& design);
 
 /// The sections that every study file has. Derived classes read the others.
 class StudySections : public TomlReader {
@@ -83,21 +104,25 @@ class StudySections : public TomlReader {
   /// Whether designs outside the model's domain count as best, feasible or hovering.
   bool read_allow_extrapolation() const;
   Condition read_condition() const;
-  /// The frequency held, if any. A vehicle whose supply cannot hold one, or that has no steady flapping, is refused.
-  std::optional<double> read_frequency(const Design<double>& design) const;
+  /// What is held but for the voltage, if anything. A vehicle that cannot hold it, or that has no steady flapping, is
+  /// refused.
+  std::optional<Hold> read_hold(const Design<double>& design) const;
+  /// The same of a study that holds something.
+  Hold held_target() const;
   /// A number of the vehicle that can be varied and differentiated.
   DesignParameter parameter_named(const TomlNode& node, const std::string& where, const Design<double>& design) const;
 
   TomlNode root_;
   const TomlNode* study_ = nullptr;
   const TomlNode* held_voltage_ = nullptr;
-  const TomlNode* held_frequency_ = nullptr;
+  const TomlNode* held_target_ = nullptr;
+  const HeldKey* held_key_ = nullptr;  ///< with it
   std::map<std::string, const TomlNode*, std::less<>> set_;
 
  private:
   const std::string* override_of(std::string_view key) const;
   void check_overrides() const;
-  void read_hold();
+  void find_hold();
   void flatten(const TomlNode& table, const std::string& path);
 
   std::vector<std::string> overrides_;

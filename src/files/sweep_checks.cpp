@@ -62,13 +62,6 @@ class SweepChecks {
     }
   }
 
-  bool has_frequency_axis() const {
-    return std::any_of(sweep_.axes.begin(), sweep_.axes.end(), [](const SweepAxis& axis) {
-      return std::any_of(axis.quantities.begin(), axis.quantities.end(),
-                         [](const SweptQuantity& q) { return q.kind == SweptQuantity::Kind::frequency; });
-    });
-  }
-
   static bool has_choice(const SweepAxis& axis) {
     return std::any_of(axis.quantities.begin(), axis.quantities.end(),
                        [](const SweptQuantity& q) { return q.kind == SweptQuantity::Kind::choice; });
@@ -101,7 +94,7 @@ class SweepChecks {
           result.condition = *from_name<Condition>(q.labels[n]);
         } else if (q.key == "springs") {
           result.springs = q.labels[n] == "on";
-        } else if (q.kind != SweptQuantity::Kind::frequency) {
+        } else if (q.kind != SweptQuantity::Kind::held) {
           TomlNode value;
           value.kind = q.labels.empty() ? Kind::number : Kind::text;
           if (q.labels.empty()) value.number = q.values[n];
@@ -136,27 +129,36 @@ class SweepChecks {
       const auto found = places_.keys.find(key);
       return found == places_.keys.end() ? places_.study : found->second;
     };
-    const bool frequency = sweep_.frequency || has_frequency_axis();
+    const HeldKey* held = nullptr;
+    for (const HeldKey& key : held_keys) {
+      if (sweep_.hold && sweep_.hold->held == key.held) held = &key;
+    }
     for (const SweepVariant& v : sweep_.variants) {
       if (swings_a_crank(v.design)) reader_.refuse(source_of("supply.type"), "supply.type", no_swinging_crank);
-      if (frequency && v.design.supply.type == SupplyType::battery) {
-        reader_.refuse(source_of("supply.type"), "supply.type", no_held_frequency);
+      if (!held) continue;
+      const std::string why = no_hold(*held, v.design);
+      const bool battery = v.design.supply.type == SupplyType::battery;
+      const char* blamed = battery ? "supply.type" : "vehicle.mass";
+      if (!why.empty() && (battery || !places_.keys.contains(blamed))) reader_.refuse(source_of(blamed), blamed, why);
+      if (v.design.supply.type == SupplyType::pwm && !(v.design.supply.duty > 0.0)) {
+        reader_.refuse(source_of("supply.duty"), "supply.duty",
+                       fmt::format("is 0: no voltage sets the {}",
+                                   held->held == Held::frequency ? "flapping frequency" : held->name));
       }
-      if (frequency && v.design.supply.type == SupplyType::pwm && !(v.design.supply.duty > 0.0)) {
-        reader_.refuse(source_of("supply.duty"), "supply.duty", "is 0: no voltage sets the flapping frequency");
+      for (const char* void_key :
+           {"supply.frequency", "supply.resonance_ratio", "supply.voltage", "supply.duty", "supply.amplitude"}) {
+        if (!places_.keys.contains(void_key) || !is_void_at(*held, void_key, v.design)) continue;
+        const char* found = held->held != Held::frequency || drive_of(v.design).voltage_sets_frequency
+                                ? ": the voltage is found for it"
+                                : "";
+        reader_.refuse(source_of(void_key), void_key,
+                       fmt::format("has no effect where the {} is held{}", held->name, found));
       }
     }
-    for (const char* key : {"supply.frequency", "supply.resonance_ratio"}) {
-      if (frequency && places_.keys.contains(key))
-        reader_.refuse(source_of(key), key, "has no effect where the frequency is held");
-    }
-    for (const char* key : {"supply.voltage", "supply.duty"}) {
-      if (frequency && places_.keys.contains(key)) {
-        reader_.refuse(source_of(key), key, "has no effect where the frequency is held: the voltage is found for it");
-      }
-    }
-    if (sweep_.frequency && places_.set_voltage) {
-      reader_.refuse(*places_.set_voltage, "set.supply.voltage", "has no effect where the frequency is held");
+    const bool by_axis = sweep_.hold && std::isnan(sweep_.hold->value);
+    if (held && !by_axis && places_.set_voltage) {
+      reader_.refuse(*places_.set_voltage, "set.supply.voltage",
+                     fmt::format("has no effect where the {} is held", held->name));
     }
   }
 

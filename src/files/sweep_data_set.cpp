@@ -39,6 +39,7 @@ class Digester {
       if (kept[m] == Metric::efficiency_system) efficiency_ = int(m);
       if (kept[m] == Metric::lift_to_weight) weight_ = int(m);
     }
+    if (sweep.hold && sweep.hold->held == Held::lift_to_weight) weight_ = -1;  // all have the same
   }
 
   void add(const SweepColumns& columns) {

@@ -36,7 +36,7 @@ class ToleranceReader : public detail::StudySections {
     const Design<double>* const designs[] = {&study.design};
     complete_metrics(study.options, designs);
     if (study.design.mass) study.options.metrics.set(std::size_t(Metric::lift_to_weight));
-    attempt([&] { study.frequency = read_frequency(study.design); });
+    attempt([&] { study.hold = read_hold(study.design); });
     attempt([&] {
       if (const TomlNode* fit = root_.find("fit")) read_fit(*fit);
     });

@@ -98,7 +98,9 @@ std::string describe_lift(const SearchFinding& f, const char* inside) {
 }  // namespace
 
 std::string describe(const SearchFinding& f) {
-  const char* inside = f.range == SearchRange::domain ? " inside the domain of validity" : "";
+  const char* inside = f.range == SearchRange::domain         ? " inside the domain of validity"
+                       : f.range == SearchRange::coefficients ? " where the force coefficients hold"
+                                                              : "";
   std::string text;
   if (f.kind == Finding::reached) {
     text = describe(f.evidence);
@@ -110,6 +112,14 @@ std::string describe(const SearchFinding& f) {
   }
   if (f.full_duty_voltage) text += fmt::format("; a duty of 1 gives {:.4g} V", *f.full_duty_voltage);
   return text;
+}
+
+std::string describe(const Hold& hold) {
+  switch (hold.held) {
+    case Held::lift: return fmt::format("mean lift held at {:.6g} mN", 1e3 * hold.value);
+    case Held::lift_to_weight: return fmt::format("lift held at {:.6g} times the weight", hold.value);
+    default: return fmt::format("flapping held at {:.6g} Hz", hold.value);
+  }
 }
 
 std::string describe(const RunResult& r) {

@@ -8,6 +8,7 @@
 
 #include "report/report_tools.hpp"
 #include "wingbeat/cycle/metric_gradients.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/report.hpp"
 
 namespace wingbeat {
@@ -106,7 +107,7 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   for (std::size_t c = 0; c < study.constraints.size(); ++c) {
     fmt::format_to(out, "{}{}", c == 0 ? " with " : ", ", name_of(study.constraints[c]));
   }
-  if (study.options.frequency) fmt::format_to(out, "; flapping held at {:.6g} Hz", *study.options.frequency);
+  if (study.options.hold) text += "; " + describe(*study.options.hold);
   const std::uint64_t screened = std::accumulate(r.screen.status.begin(), r.screen.status.end(), std::uint64_t(0));
   fmt::format_to(out, "\nscreened {} designs: {} flap, {} of these within every constraint\n", screened,
                  r.screen.status[0], r.screen.feasible);

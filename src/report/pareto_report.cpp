@@ -14,6 +14,7 @@
 #include "wingbeat/cycle/metric_gradients.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/netcdf_results.hpp"
+#include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/report/report.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
@@ -150,7 +151,7 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
   for (std::size_t c = 0; c < study.constraints.size(); ++c) {
     aims += (c == 0 ? " with " : ", ") + name_of(study.constraints[c]);
   }
-  if (study.frequency) aims += fmt::format("; flapping held at {:.6g} Hz", *study.frequency);
+  if (study.hold) aims += "; " + describe(*study.hold);
   fmt::format_to(out, "{}\nscreened {} designs: {} flap, {} of these within every constraint\n",
                  wrapped(aims, optimum_width, 0), study.screen, r.screen.status[0], r.screen.feasible);
   if (r.screen.outside > 0) {

@@ -118,7 +118,7 @@ void plot_contours(const Study& study, const NetcdfReader& file, std::span<const
   }
   const bool all_flap = std::all_of(status.begin(), status.end(), [](double s) { return s == 0.0; });
 
-  std::string note = all_flap ? "" : "grey: does not flap";
+  std::string note = all_flap ? "" : fmt::format("grey: {}", without_numbers(study.sweep));
   if (carried) note += fmt::format("{}dashed: lift = weight, best sought above", note.empty() ? "" : "; ");
   if (leaves) {
     note += fmt::format("{}hatched: outside the model's domain{}", note.empty() ? "" : "; ",

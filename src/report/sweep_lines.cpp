@@ -187,7 +187,7 @@ void plot_lines(const Study& study, const NetcdfReader& file, std::span<const Me
     carried = carried || (found.back().design() && found.back().carries_weight());
     for (const double y : fields.back().values) broken = broken || !std::isfinite(y);
   }
-  std::string note = broken ? "no line: does not flap" : "";
+  std::string note = broken ? fmt::format("no line: {}", without_numbers(sweep)) : "";
   if (leaves) note += fmt::format("{}grey band: outside the model's domain", note.empty() ? "" : "; ");
   if (carried) note += fmt::format("{}best sought where lift ≥ weight", note.empty() ? "" : "; ");
   const std::vector<std::string> remarks = remark_lines(note, format.width);

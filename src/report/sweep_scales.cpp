@@ -112,7 +112,25 @@ std::string Field::shown(double value) const {
 
 const char* Field::superlative() const {
   const std::string_view key = metric_info(metric).key;
+  if (lower_is_better()) return "lowest";
   return is_efficiency(metric) || key.starts_with("lift") ? "best" : "highest";
+}
+
+bool Field::lower_is_better() const {
+  switch (metric) {
+    case Metric::power_aerodynamic: return false;
+    case Metric::voltage:
+    case Metric::winding_temperature:
+    case Metric::case_temperature: return true;
+    default: break;
+  }
+  const std::string_view key = metric_info(metric).key;
+  return key.starts_with("power_") || key.starts_with("current_") || key.starts_with("rod_force_");
+}
+
+const char* without_numbers(const Sweep& sweep) {
+  if (!sweep.hold) return "does not flap";
+  return sweep.hold->held == Held::frequency ? "does not flap, or not so fast" : "does not flap, or without that lift";
 }
 
 std::string design_note(int status, unsigned domain) {
@@ -127,7 +145,8 @@ std::string design_note(int status, unsigned domain) {
 }
 
 std::vector<double> lift_over_weight(const Sweep& sweep, const NetcdfReader& file) {
-  if (!sweep.options.metrics[std::size_t(Metric::lift_to_weight)]) return {};
+  const bool held = sweep.hold && sweep.hold->held == Held::lift_to_weight;
+  if (held || !sweep.options.metrics[std::size_t(Metric::lift_to_weight)]) return {};
   return file.read(metric_info(Metric::lift_to_weight).key);
 }
 
@@ -136,7 +155,7 @@ SweepBest best_of(const Field& field, const std::vector<double>& weight, const s
   SweepBest best;
   for (std::size_t n = 0; n < field.values.size(); ++n) {
     if (!extrapolates && domain[n] != 0.0) continue;
-    best.offer(n, field.values[n], weight.empty() ? absent : weight[n]);
+    best.offer(n, field.lower_is_better() ? -field.values[n] : field.values[n], weight.empty() ? absent : weight[n]);
   }
   return best;
 }

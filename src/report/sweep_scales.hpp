@@ -60,16 +60,21 @@ struct Field {
   Field(const NetcdfReader& file, Metric m);
   std::string label() const;
   std::string shown(double value) const;
-  /// "best" or "highest"
+  /// "best", "highest" or "lowest"
   const char* superlative() const;
+  bool lower_is_better() const;  ///< of what costs: powers, currents, forces, heat
 };
+
+/// What designs do that have no metrics: "does not flap".
+const char* without_numbers(const Sweep& sweep);
 
 /// What a read-out says of a design beside its numbers: that it does not flap, or the limits of the domain it exceeds.
 std::string design_note(int status, unsigned domain);
 
-/// Of every design; empty where the study does not keep it.
+/// Of every design; empty where the study does not keep it, or holds it.
 std::vector<double> lift_over_weight(const Sweep& sweep, const NetcdfReader& file);
 
+/// The largest value, or the lowest where that is better.
 SweepBest best_of(const Field& field, const std::vector<double>& weight, const std::vector<double>& domain,
                   bool extrapolates);
 

@@ -76,7 +76,7 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   const char* method = study.method == ToleranceMethod::sobol ? "scrambled Sobol" : "Monte Carlo";
   fmt::format_to(out, "{} {} samples", base_count(study), method);
   if (study.indices) fmt::format_to(out, ", {} vehicles with those for the indices", result.vehicles);
-  if (study.frequency) fmt::format_to(out, "; flapping held at {:.6g} Hz", *study.frequency);
+  if (study.hold) text += "; " + describe(*study.hold);
   fmt::format_to(out, "\n\nUncertain parameters\n");
   for (std::size_t k = 0; k < study.parameters.size(); ++k) {
     const UncertainParameter& p = study.parameters[k];

@@ -121,7 +121,7 @@ ToleranceStudy published_tolerance(const PublishedFile& file, const Design<doubl
   ToleranceStudy study;
   study.title = file.title;
   study.design = design;
-  study.frequency = frequency;
+  if (frequency) study.hold = Hold{Held::frequency, *frequency};
   study.options.tolerance = 1e-6;
   study.options.isa = InstructionSet::base;  // the bytes of the report do not depend on the processor
   study.options.metrics.reset(std::size_t(Metric::floquet_multiplier_max));

@@ -8,7 +8,8 @@ namespace wingbeat {
 DesignPoint design_point(const Design<double>& given, const DesignPointOptions& options,
                          std::span<const DesignParameter> parameters, const StartUp& start_up) {
   Design<double> design = given;
-  const bool driven = options.frequency && set_drive_frequency(design, *options.frequency);
+  const bool driven =
+      options.hold && options.hold->held == Held::frequency && set_drive_frequency(design, options.hold->value);
   DesignPoint point;
   point.metrics.values.fill(absent);
   std::array<double, metric_count> nothing;
@@ -24,8 +25,8 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   }
   Vehicle<double> vehicle = resolve(design, options.condition);
   const SteadyOptions steady{options.tolerance, false, reporting_of(design)};
-  if (options.frequency && !driven) {
-    const FrequencySearch search = find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up);
+  if (options.hold && !driven) {
+    const FrequencySearch search = find_voltage(vehicle, *options.hold, steady, start_up);
     if (search.outcome != FrequencyOutcome::reached) {
       const bool flaps = search.status == FlappingStatus::flapping;
       point.status = flaps ? SweepStatus::unreached : sweep_status(search.status);
@@ -49,7 +50,7 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   point.domain = domain_of(point.domain_excess);
   if (parameters.empty() || orbit.record.empty()) return point;
 
-  const GradientOptions held{options.frequency ? Held::frequency : Held::voltage, options.peaks, {}};
+  const GradientOptions held{options.hold ? options.hold->held : Held::voltage, options.peaks, {}};
   const MetricGradients gradients = metric_gradients(design, options.condition, orbit, parameters, held);
   if (!gradients.regular) return point;
   point.gradients = gradients.by_parameter;

@@ -267,7 +267,7 @@ class LiftTrace {
     for (int n = 0; n < 20 && log_width(a, b) > 1e-6; ++n) {
       const double from = detail::largest_excess(a), to = detail::largest_excess(b);
       const double guess = from / (from - to);
-      const bool usable = n % 3 != 2 && guess > 0.0 && guess < 1.0 && where_.range == SearchRange::domain;
+      const bool usable = n % 3 != 2 && guess > 0.0 && guess < 1.0 && where_.range != SearchRange::extrapolation;
       const VoltageTrial m = between(a, b, usable ? std::clamp(guess, 1e-3, 1.0 - 1e-3) : 0.5);
       if (!m.flaps) return;
       (m.inside == a.inside ? a : b) = m;
@@ -328,7 +328,7 @@ class LiftTrace {
     SearchFinding finding = found(Finding::too_high);
     finding.max_point = lift_at(*max_);
     finding.last_voltage = last.voltage;
-    if (last.beyond && where_.range == SearchRange::domain) finding.limits = last.limits;
+    if (last.beyond && where_.range != SearchRange::extrapolation) finding.limits = last.limits;
     return conclude(FrequencyOutcome::too_high, *max_, finding);
   }
 

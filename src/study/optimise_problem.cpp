@@ -26,7 +26,8 @@ std::optional<Vector> OptimiseProblem::given() const {
 
 Design<double> OptimiseProblem::found(const Vector& u, const DesignPoint& point) const {
   Design<double> d = design(u);
-  if (study_.options.frequency && !set_drive_frequency(d, *study_.options.frequency)) {
+  const std::optional<Hold>& hold = study_.options.hold;
+  if (hold && !(hold->held == Held::frequency && set_drive_frequency(d, hold->value))) {
     const double duty = d.supply.type == SupplyType::pwm ? d.supply.duty : 1.0;
     d.supply.voltage = point.metrics[Metric::voltage] / duty;
   }

@@ -26,6 +26,8 @@ class OptimiseProblem {
     wanted.set(std::size_t(study.objective));
     for (const MetricConstraint& c : study.constraints) wanted.set(std::size_t(c.metric));
     options_.flight = flight_metrics(wanted, study.allow_extrapolation);
+    // The domain's limits are constraints with slopes, which a search that ends at them would not have.
+    if (options_.hold) options_.hold->range = SearchRange::extrapolation;
   }
 
   Eigen::Index size() const { return Eigen::Index(study_.parameters.size()); }

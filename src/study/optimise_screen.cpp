@@ -28,7 +28,7 @@ std::vector<Vector> screened(const OptimiseProblem& problem, const StartUp& star
   sweep.axes.push_back(std::move(axis));
   sweep.variants.push_back({study.design, study.options.condition, true});
   sweep.variant_stride = {0};
-  sweep.frequency = study.options.frequency;
+  sweep.hold = study.options.hold;
   sweep.allow_extrapolation = study.allow_extrapolation;
   sweep.options.tolerance = 1e-4;
   sweep.options.metrics.reset();

@@ -66,7 +66,7 @@ class Problem {
       for (std::size_t k = 0; k < count; ++k) {
         sweep.variants.push_back({vehicle(designs[first + k]), study_.condition, true});
       }
-      sweep.frequency = study_.frequency;
+      sweep.hold = study_.hold;
       sweep.allow_extrapolation = study_.allow_extrapolation;
       sweep.options.tolerance = tolerance;
       sweep.options.metrics = metrics;
@@ -224,7 +224,7 @@ ObjectivePoint reference_of(const ParetoStudy& study, const Problem& problem, co
 
 Design<double> vehicle_of(const ParetoStudy& study, const ParetoDesign& design) {
   Design<double> v = Problem(study, {}, {}).vehicle(design);
-  if (study.frequency) {
+  if (study.hold) {
     v.supply.voltage = design.metrics[Metric::voltage] / (v.supply.type == SupplyType::pwm ? v.supply.duty : 1.0);
   }
   return v;

@@ -6,7 +6,7 @@
 
 #include "wingbeat/core/root.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
-#include "wingbeat/study/ensemble_frequency.hpp"
+#include "wingbeat/study/ensemble_hold.hpp"
 #include "wingbeat/study/trend.hpp"
 #include "wingbeat/vehicle/motion.hpp"
 
@@ -52,9 +52,9 @@ void run_along(TrendCurve& curve, const std::vector<double>& axis, bool frequenc
   const StartUp start_up = start_up_in_time();
   if (frequency) {
     std::vector<FrequencyOutcome> reached(members.size());
-    std::vector<double> held;
-    for (const std::size_t n : indices) held.push_back(axis[n]);
-    solve_ensemble_at_frequency(members, held, ensemble_options(), start_up, outcomes, reached);
+    std::vector<Hold> held;
+    for (const std::size_t n : indices) held.push_back({Held::frequency, axis[n]});
+    solve_ensemble_held(members, held, ensemble_options(), start_up, outcomes, reached);
   } else {
     solve_ensemble(members, ensemble_options(), start_up, outcomes);
   }
@@ -254,8 +254,8 @@ LossCurve loss_along_stiffness(const Design<double>& design, double frequency, d
   }
   std::vector<EnsembleOutcome> outcomes(members.size());
   std::vector<FrequencyOutcome> reached(members.size());
-  const std::vector<double> held(members.size(), frequency);
-  solve_ensemble_at_frequency(members, held, ensemble_options(), start_up_in_time(), outcomes, reached);
+  const std::vector<Hold> held(members.size(), {Held::frequency, frequency});
+  solve_ensemble_held(members, held, ensemble_options(), start_up_in_time(), outcomes, reached);
   curve.metrics = metrics_of(outcomes);
   return curve;
 }

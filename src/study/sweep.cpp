@@ -5,25 +5,26 @@
 
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/study/endurance.hpp"
-#include "wingbeat/study/ensemble_frequency.hpp"
+#include "wingbeat/study/ensemble_hold.hpp"
 
 namespace wingbeat {
 namespace {
 
-/// Sets the numbers of one place along each axis; gives the held frequency.
-double set_numbers(const Sweep& sweep, std::span<const std::uint64_t> place, SweepVariant& variant) {
-  double frequency = sweep.frequency.value_or(absent);
+/// Sets the numbers of one place along each axis; gives what is held.
+std::optional<Hold> set_numbers(const Sweep& sweep, std::span<const std::uint64_t> place, SweepVariant& variant) {
+  std::optional<Hold> hold = sweep.hold;
+  if (hold) hold->range = search_range(sweep.allow_extrapolation);
   for (std::size_t a = 0; a < sweep.axes.size(); ++a) {
     const SweepAxis& axis = sweep.axes[a];
     for (std::size_t q = 0; q < axis.quantities.size(); ++q) {
       const SweptQuantity& quantity = axis.quantities[q];
       if (quantity.kind == SweptQuantity::Kind::number) quantity.set(variant.design, axis.value(q, place[a]));
-      if (quantity.kind == SweptQuantity::Kind::frequency) frequency = axis.value(q, place[a]);
+      if (quantity.kind == SweptQuantity::Kind::held) hold->value = axis.value(q, place[a]);
     }
   }
   if (!variant.springs) variant.design.spring = {};
-  if (!std::isnan(frequency)) set_drive_frequency(variant.design, frequency);
-  return frequency;
+  if (hold && hold->held == Held::frequency) set_drive_frequency(variant.design, hold->value);
+  return hold;
 }
 
 std::size_t variant_at(const Sweep& sweep, std::span<const std::uint64_t> place) {
@@ -83,8 +84,8 @@ SweepStatus sweep_status(FlappingStatus status) {
 SweepDesign design_at(const Sweep& sweep, std::uint64_t index) {
   const auto place = places(sweep, index);
   SweepVariant variant = sweep.variants[variant_at(sweep, place)];
-  const double frequency = set_numbers(sweep, place, variant);
-  return {variant.design, variant.condition, std::isnan(frequency) ? std::nullopt : std::optional(frequency)};
+  const std::optional<Hold> hold = set_numbers(sweep, place, variant);
+  return {variant.design, variant.condition, hold};
 }
 
 void SweepColumns::resize(std::size_t designs, std::size_t metrics_kept) {
@@ -97,28 +98,23 @@ void SweepColumns::resize(std::size_t designs, std::size_t metrics_kept) {
 }
 
 SweepSolver::SweepSolver(const Sweep& sweep, StartUp start_up)
-    : sweep_(sweep), start_up_(std::move(start_up)), holds_frequency_(sweep.frequency), variants_(sweep.variants) {
+    : sweep_(sweep), start_up_(std::move(start_up)), variants_(sweep.variants) {
   for (int m = 0; m < metric_count; ++m) {
     if (sweep.options.metrics[std::size_t(m)]) kept_.push_back(m);
   }
-  for (const SweepAxis& axis : sweep.axes) {
-    for (const SweptQuantity& q : axis.quantities) {
-      holds_frequency_ = holds_frequency_ || q.kind == SweptQuantity::Kind::frequency;
-    }
-  }
   members_.reserve(sweep_block);
   rows_.reserve(sweep_block);
-  frequencies_.reserve(sweep_block);
+  holds_.reserve(sweep_block);
 }
 
 void SweepSolver::gather(SweepColumns& columns, std::size_t begin, std::size_t end) {
   members_.clear();
   rows_.clear();
-  frequencies_.clear();
+  holds_.clear();
   auto place = places(sweep_, columns.first + begin);
   for (std::size_t row = begin; row < end; ++row, next(sweep_, place)) {
     SweepVariant& variant = variants_[variant_at(sweep_, place)];
-    const double frequency = set_numbers(sweep_, place, variant);
+    const std::optional<Hold> hold = set_numbers(sweep_, place, variant);
     try {
       validate(variant.design);
     } catch (const ParameterError&) {
@@ -127,7 +123,7 @@ void SweepSolver::gather(SweepColumns& columns, std::size_t begin, std::size_t e
     }
     members_.push_back({resolve(variant.design, variant.condition), reporting_of(variant.design)});
     rows_.push_back(row);
-    frequencies_.push_back(frequency);
+    if (hold) holds_.push_back(*hold);
   }
 }
 
@@ -140,8 +136,8 @@ void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t en
   }
   outcomes_.resize(members_.size());
   reached_.assign(members_.size(), FrequencyOutcome::reached);
-  if (holds_frequency_) {
-    solve_ensemble_at_frequency(members_, frequencies_, sweep_.options, start_up_, outcomes_, reached_);
+  if (sweep_.hold) {
+    solve_ensemble_held(members_, holds_, sweep_.options, start_up_, outcomes_, reached_);
   } else {
     solve_ensemble(members_, sweep_.options, start_up_, outcomes_);
   }

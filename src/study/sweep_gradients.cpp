@@ -21,7 +21,7 @@ std::vector<double> sweep_gradients(const Sweep& sweep, std::span<const std::uin
     const SweepDesign row = design_at(sweep, designs[n]);
     DesignPointOptions options;
     options.condition = row.condition;
-    options.frequency = row.frequency;
+    options.hold = row.hold;
     options.tolerance = sweep.options.tolerance;
     options.peaks = std::any_of(metrics.begin(), metrics.end(),
                                 [drive = drive_of(row.design)](Metric m) { return is_peak(m, drive); });

@@ -211,7 +211,7 @@ Sweep tolerance_sweep(const ToleranceStudy& study) {
   sweep.axes.push_back(std::move(axis));
   sweep.variants.push_back({study.design, study.condition, true});
   sweep.variant_stride = {0};
-  sweep.frequency = study.frequency;
+  sweep.hold = study.hold;
   sweep.options = study.options;
   sweep.allow_extrapolation = study.allow_extrapolation;
   return sweep;
@@ -255,8 +255,9 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
     p.parameter.set(centre, p.distribution.mean());
     parameters.push_back(p.parameter);
   }
-  const DesignPointOptions options{study.condition, study.frequency, study.options.tolerance, true,
-                                   flight_metrics(study.options.metrics, study.allow_extrapolation)};
+  DesignPointOptions options{study.condition, study.hold, study.options.tolerance, true,
+                             flight_metrics(study.options.metrics, study.allow_extrapolation)};
+  if (options.hold) options.hold->range = search_range(study.allow_extrapolation);
   result.centre = design_point(centre, options, parameters, start_up);
   const auto covariance = parameter_covariance(study);
 
@@ -308,14 +309,17 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
 
     if (Metric(m) != Metric::lift_to_weight || !study.design.mass) continue;
     std::vector<double> hovers(values.size());
+    // A held lift is as exact as the tolerance.
+    const bool held = study.hold && study.hold->held == Held::lift_to_weight;
+    const double carries = held ? 1.0 - study.options.tolerance : 1.0;
     std::uint64_t count = 0;
     for (std::size_t n = 0; n < values.size(); ++n) {
-      hovers[n] = values[n] >= 1.0 ? 1.0 : 0.0;
-      if (n < base) count += values[n] >= 1.0;
+      hovers[n] = values[n] >= carries ? 1.0 : 0.0;
+      if (n < base) count += values[n] >= carries;
     }
     result.hover = probability_of(count, base);
     const ToleranceOutput& lift = result.outputs.back();
-    if (lift.linear_deviation > 0.0) {
+    if (lift.linear_deviation > 0.0 && !held) {
       result.linear_hover = normal_probability((lift.linear_mean - 1.0) / lift.linear_deviation);
     }
     if (count == 0 || count == base) continue;

@@ -57,16 +57,22 @@ VoltageTrial VoltageTrials::at(double voltage) {
     }
   }
   DomainExcess excess = domain_excess(vehicle_, m);
-  const bool domain = range_ == SearchRange::domain;
+  const bool domain = range_ != SearchRange::extrapolation;
   const double alpha = m[Metric::angle_of_attack_min];
   const double flow = excess[std::size_t(DomainLimit::flow_speed)];
   const double heat = excess[std::size_t(DomainLimit::winding_temperature)];
-  trial.beyond = domain ? alpha < angle_of_attack_lowest_deg || flow > 0.0 || heat > 0.0
-                        : alpha < extrapolation_angle_deg || flow > extrapolation_flow_speed / flow_speed_max - 1.0;
+  trial.beyond = domain
+                     ? alpha < angle_of_attack_lowest_deg || flow > 0.0 || (heat > 0.0 && range_ == SearchRange::domain)
+                     : alpha < extrapolation_angle_deg || flow > extrapolation_flow_speed / flow_speed_max - 1.0;
   if (!domain) {
     excess.fill(-1.0);
     excess[std::size_t(DomainLimit::angle_of_attack)] = (extrapolation_angle_deg - alpha) / -extrapolation_angle_deg;
     excess[std::size_t(DomainLimit::flow_speed)] = (flow + 1.0) * flow_speed_max / extrapolation_flow_speed - 1.0;
+  }
+  if (range_ == SearchRange::coefficients) {
+    excess.fill(-1.0);
+    excess[std::size_t(DomainLimit::angle_of_attack)] = (angle_of_attack_lowest_deg - alpha) / 90.0;
+    excess[std::size_t(DomainLimit::flow_speed)] = flow;
   }
   trial.excess = excess;
   trial.inside = domain ? domain_of(excess).none() : !trial.beyond;

@@ -66,6 +66,20 @@ TEST_F(StudyFile, ExamplesAreRead) {
   EXPECT_THAT(sizes, ElementsAre(222U, 2048U, 56U * 76U, 444U, 444U, 484U, 16U * 161U, 2U * 181U, 4U * 149U));
 }
 
+TEST_F(StudyFile, NoLiftOverTheWeightIsHeldWithoutAMass) {
+  std::string vehicle;
+  std::ifstream file(folder_ / "friction2022-springs.toml");
+  for (std::string line; std::getline(file, line);) {
+    if (!line.starts_with("mass")) vehicle += line + "\n";
+  }
+  write("friction2022-springs.toml", vehicle);
+  const std::string hover = "hold = { lift_to_weight = 1 }\n";
+  EXPECT_THAT(complaint(hover + radius_axis), HasSubstr("vehicle.mass: the vehicle states no mass; give vehicle.mass"));
+  const std::string by_mass = "[[axis]]\nkey = \"vehicle.mass\"\nvalues = [0.001, 0.002]\n";
+  EXPECT_EQ(read(hover + "[set]\nvehicle.mass = 0.001\n" + radius_axis).sweep.size(), 2U);
+  EXPECT_NO_THROW(read(hover + by_mass));
+}
+
 TEST_F(StudyFile, ExamplesOfToleranceAndOptimiseAreRead) {
   const fs::path studies = fs::path(WINGBEAT_DATA) / "studies";
   EXPECT_EQ(read_tolerance_study(studies / "tolerance-hover.toml").parameters.size(), 10U);
@@ -155,7 +169,18 @@ TEST_F(StudyFile, OptionsAndOverrides) {
   EXPECT_EQ(d.motor.constants.inertia, 2e-7);
   EXPECT_EQ(d.spring.stiffness, 1e-3);
   EXPECT_EQ(d.wing.planform.shape, PlanformShape::rectangle);
-  EXPECT_EQ(read("hold = { frequency = \"22 Hz\" }\n" + radius_axis).sweep.frequency, 22.0);
+  const std::optional<Hold> fast = read("hold = { frequency = \"22 Hz\" }\n" + radius_axis).sweep.hold;
+  ASSERT_TRUE(fast);
+  EXPECT_EQ(fast->held, Held::frequency);
+  EXPECT_EQ(fast->value, 22.0);
+  const Sweep hovers = read("hold = { lift_to_weight = 1 }\n[set]\nvehicle.mass = \"2 g\"\n" + radius_axis).sweep;
+  ASSERT_TRUE(hovers.hold);
+  EXPECT_EQ(hovers.hold->held, Held::lift_to_weight);
+  EXPECT_EQ(hovers.hold->value, 1.0);
+  const Sweep lifts = read("[[axis]]\nkey = \"lift\"\nvalues = [\"10 mN\", \"20 mN\"]\n").sweep;
+  ASSERT_TRUE(design_at(lifts, 1).hold);
+  EXPECT_EQ(design_at(lifts, 1).hold->held, Held::lift);
+  EXPECT_EQ(design_at(lifts, 1).hold->value, 0.02);
 }
 
 TEST_F(StudyFile, TheTextsOfAStudyMakeItAgain) {
@@ -212,7 +237,16 @@ TEST_F(StudyFile, WrongStudiesAreRefused) {
       {"hold = { voltage = \"3 kg\" }\n" + radius_axis,
        "s.toml:3:10: study.hold.voltage: expected a voltage such as \"3 V\", got \"3 kg\""},
       {"hold = { voltage = 3, frequency = 22 }\n" + radius_axis,
-       "s.toml:3:1: study.hold: give one of voltage and frequency"},
+       "s.toml:3:1: study.hold: give one of voltage, frequency, lift and lift_to_weight"},
+      {"hold = { frequency = 22, lift = 1 }\n" + radius_axis, "s.toml:3:26: study.hold: holds the frequency already"},
+      {"hold = { lift = \"0 mN\" }\n" + radius_axis, "s.toml:3:10: study.hold.lift: must be > 0 N"},
+      {"hold = { lift_to_weight = -1 }\n" + radius_axis, "s.toml:3:10: study.hold.lift_to_weight: must be > 0"},
+      {"hold = { lift = \"9 mN\" }\n[[axis]]\nkey = \"supply.voltage\"\nvalues = [1, 2]\n",
+       "s.toml:5:1: supply.voltage: has no effect where the mean lift is held: the voltage is found for it"},
+      {"hold = { lift = \"9 mN\" }\n[[axis]]\nkey = \"frequency\"\nvalues = [11, 22]\n",
+       "s.toml:5:1: axis.key: study.hold holds the mean lift already"},
+      {"[[axis]]\nkey = \"lift\"\nvalues = [0.01]\n[[axis]]\nkey = \"frequency\"\nvalues = [11]\n",
+       "s.toml:7:1: axis.key: another axis gives what is held"},
       {"hold = { frequency = \"0 Hz\" }\n" + radius_axis, "s.toml:3:10: study.hold.frequency: must be > 0 Hz"},
       {"", "s.toml:1:2: study: nothing to vary; give [[axis]] sections or [samples]"},
       {"x =\n", "s.toml:3:4: not TOML: in a key-value pair, expected value, saw '\\n'"},

@@ -201,6 +201,11 @@ class Contradictions(Refusals):
             (lambda: vehicle.solve_columns({"frequency": [20.0]}, frequency=22), "frequency: is given in the columns and beside them"),
             (lambda: vehicle.solve_columns({"frequency": 20.0, "friction.radius": [2e-3]}, frequency=22), "frequency: is given in the columns"),
             (lambda: vehicle.sweep({"frequency": [20.0, 21.0]}, frequency=22), "frequency: is an axis, and held beside it"),
+            (lambda: vehicle.solve(lift=0.01, lift_to_weight=1), "lift_to_weight: cannot be asked for beside lift"),
+            (lambda: vehicle.solve(lift_to_weight=0), "lift_to_weight: must be > 0"),
+            (lambda: vehicle.solve_columns({"lift": [0.01]}, lift_to_weight=1), "lift_to_weight: cannot be asked for beside lift"),
+            (lambda: vehicle.sweep({"lift": [0.01, 0.02]}, lift="9 mN"), "lift: is an axis, and held beside it"),
+            (lambda: vehicle.sweep({"supply.voltage": [3, 4]}, lift="9 mN"), "supply.voltage: has no effect where the mean lift is held"),
             (lambda: vehicle.replace({"motor.inertia": 1e-7, "motor": {"inertia": 2e-7}}), "motor.inertia: is given twice"),
             (lambda: wb.tolerance({"study": {"vehicle": "friction2022"}}, vehicle=vehicle), "study.vehicle: is given in the study and beside it"),
         ):

@@ -36,6 +36,28 @@ class Columns(unittest.TestCase):
         self.assertEqual(found.to_xarray().lift_mean.attrs["units"], "N")
         self.assertIn("locked", repr(found))
 
+    def test_a_held_lift_is_that_of_each_design_alone(self):
+        vehicle = wb.read(DATA / "designs" / "two-wing-four-bar.toml")
+        gears = np.linspace(6.0, 20.0, 8)
+        hovers = vehicle.solve_columns({"motor.gear_ratio": gears}, lift_to_weight=1)
+        self.assertTrue(hovers.flapping.all())
+        np.testing.assert_allclose(hovers.lift_to_weight, 1.0, rtol=1e-6)
+        alone = [vehicle.replace({"motor.gear_ratio": gear}).solve(lift_to_weight=1, tolerance=1e-9) for gear in gears]
+        np.testing.assert_allclose(hovers.voltage, [float(result.voltage) for result in alone], rtol=1e-5)
+        slopes = hovers.gradient(["power_electrical", "lift_to_weight"], ["motor.gear_ratio", "vehicle.mass"])
+        np.testing.assert_allclose(slopes[:, 1], 0.0, atol=1e-9)
+        one = alone[3].gradient("power_electrical", ["motor.gear_ratio", "vehicle.mass"])
+        np.testing.assert_allclose(slopes[3, 0], one, rtol=1e-4)
+        step = 1e-4 * gears[3]
+        beside = [vehicle.replace({"motor.gear_ratio": gears[3] + s}).solve(lift_to_weight=1, tolerance=1e-10) for s in (step, -step)]
+        change = float(beside[0].power_electrical) - float(beside[1].power_electrical)
+        self.assertAlmostEqual(change / (2.0 * step) / one[0], 1.0, 5)
+        with_mass = vehicle.solve_columns({"vehicle.mass": [0.016, 0.018], "lift": [0.15, 0.2]})
+        np.testing.assert_allclose(with_mass.lift_mean, [0.15, 0.2], rtol=1e-6)
+        data = vehicle.sweep({"motor.gear_ratio": [8, 12], "lift_to_weight": [1, 1.2]}, metrics=["lift_to_weight"])
+        self.assertEqual(data.lift_to_weight.dims, ("motor_gear_ratio", "held_lift_to_weight"))
+        np.testing.assert_allclose(data.lift_to_weight, [[1, 1.2], [1, 1.2]], rtol=1e-6)
+
     def test_gradients_are_those_of_each_design_alone(self):
         vehicle = wb.read(DATA / "designs" / "friction2022-springs.toml")
         columns = {"supply.voltage": np.linspace(0.2, 5.0, 21), "transmission.crank_radius": np.linspace(4e-3, 6e-3, 21)}

@@ -158,7 +158,7 @@ TEST(Optimise, DependsNeitherOnThreadsNorOnTheirOrder) {
 
 TEST(Optimise, AHeldFrequencyGivesTheVoltage) {
   OptimiseStudy study = study_of({between("spring.stiffness", 0.0, 4e-3)});
-  study.options.frequency = 22.0;
+  study.options.hold = Hold{Held::frequency, 22.0};
   const OptimiseResult r = optimise(study, start_up_in_time());
   ASSERT_EQ(r.outcome, OptimiseResult::Outcome::found);
   const RunResult run = run_design(r.design);
@@ -168,6 +168,24 @@ TEST(Optimise, AHeldFrequencyGivesTheVoltage) {
   plain.spring = {};
   EXPECT_LT(run.metrics[Metric::power_electrical],
             run_design(plain, {.frequency = 22.0}).metrics[Metric::power_electrical]);
+}
+
+// At a held lift the voltage is no parameter: the same optimum as with it, and the lift as a constraint.
+TEST(Optimise, AHeldLiftIsOneParameterAndOneConstraintLess) {
+  OptimiseStudy held =
+      study_of({between("spring.stiffness", 0.0, 4e-3), between("transmission.crank_radius", 3e-3, 8e-3)});
+  held.design.mass = 0.0022;
+  OptimiseStudy constrained = held;
+  constrained.parameters.push_back(between("supply.voltage", 2.0, 8.0));
+  constrained.constraints = {{Metric::lift_to_weight, true, 1.0}};
+  held.options.hold = Hold{Held::lift_to_weight, 1.0};
+  const OptimiseResult a = optimise(held, start_up_in_time()), b = optimise(constrained, start_up_in_time());
+  ASSERT_EQ(a.outcome, OptimiseResult::Outcome::found);
+  ASSERT_EQ(b.outcome, OptimiseResult::Outcome::found);
+  EXPECT_NEAR(a.point.metrics[Metric::lift_to_weight], 1.0, 1e-7);
+  const double power = b.point.metrics[Metric::power_electrical];
+  EXPECT_NEAR(a.point.metrics[Metric::power_electrical], power, 1e-5 * power);
+  EXPECT_NEAR(run_design(a.design).metrics[Metric::lift_to_weight], 1.0, 1e-6);
 }
 
 }  // namespace

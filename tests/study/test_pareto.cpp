@@ -228,7 +228,7 @@ TEST(Pareto, DesignsRunAsTheyWereFound) {
   study.screen = 64;
   study.evolution.population = 16;
   study.evolution.generations = 3;
-  study.frequency = 20.0;
+  study.hold = Hold{Held::frequency, 20.0};
   study.parameters = {between("transmission.crank_radius", 3e-3, 8e-3), between("spring.stiffness", 0.0, 5e-3)};
   const ParetoResult r = pareto_front(study, wingbeat_evolution_module, start_up_in_time());
   ASSERT_EQ(r.outcome, ParetoResult::Outcome::found);

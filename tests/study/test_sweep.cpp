@@ -135,12 +135,13 @@ TEST(Sweep, FrequenciesThatCannotBeHeldSaySo) {
   design.motor.constants.inertia = 1e-6;
   Sweep sweep;
   SweptQuantity frequency;
-  frequency.kind = SweptQuantity::Kind::frequency;
+  frequency.kind = SweptQuantity::Kind::held;
   frequency.key = frequency.name = "frequency";
   frequency.values = {5.0, 22.0};  // locked below 7 Hz
   SweptQuantity law;
   law.kind = SweptQuantity::Kind::choice;
   law.labels = {"load-proportional", "quadratic"};
+  sweep.hold = Hold{Held::frequency};
   sweep.axes.push_back({"law", 2, {law}, false, {}, {}});
   sweep.axes.push_back({"frequency", 2, {frequency}, false, {}, {}});
   sweep.variants = {{design, Condition::air, true}, {reference_design(), Condition::air, true}};

@@ -11,7 +11,7 @@
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/report/describe.hpp"
-#include "wingbeat/study/ensemble_frequency.hpp"
+#include "wingbeat/study/ensemble_hold.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat {
@@ -438,11 +438,11 @@ TEST(FrequencySearch, ManyUnreachedDesignsCostNothing) {
   std::mt19937_64 random(5);
   std::vector<EnsembleMember> members;
   for (int n = 0; n < 500; ++n) members.push_back({resolve(random_design(random, 1.5)), {}});
-  const std::vector<double> frequencies(members.size(), 1e6);
+  const std::vector<Hold> holds(members.size(), {Held::frequency, 1e6});
   std::vector<EnsembleOutcome> outcomes(members.size());
   std::vector<FrequencyOutcome> reached(members.size());
   const auto start = processor_time();
-  solve_ensemble_at_frequency(members, frequencies, {}, start_up_in_time(), outcomes, reached);
+  solve_ensemble_held(members, holds, {}, start_up_in_time(), outcomes, reached);
   EXPECT_LT(processor_time() - start, 0.1);
   for (std::size_t n = 0; n < members.size(); ++n) {
     EXPECT_EQ(reached[n], FrequencyOutcome::outside_domain);

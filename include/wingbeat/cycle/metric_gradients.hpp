@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "wingbeat/core/jet_traits.hpp"
+#include "wingbeat/cycle/held.hpp"
 #include "wingbeat/cycle/metric_values.hpp"
 #include "wingbeat/vehicle/forward.hpp"
 
@@ -24,13 +25,6 @@ inline constexpr int gradient_voltage_slot = 2;
 inline constexpr int gradient_first_slot = 3;
 inline constexpr int gradient_slots = gradient_first_slot + gradient_parameters;
 using GradientJet = Jet<gradient_slots>;
-
-/// What stays as it is while a parameter changes.
-enum class Held {
-  voltage,
-  frequency  ///< the supply's voltage follows, whatever it was given as; a direct drive has its frequency from the
-             ///< supply
-};
 
 struct GradientOptions {
   Held held = Held::voltage;
@@ -53,9 +47,8 @@ struct DesignParameter {
 /// Derivatives of all metrics by any number of parameters.
 struct MetricGradients {
   std::vector<std::array<double, metric_count>> by_parameter;
-  std::array<double, metric_count>
-      by_voltage{};     ///< by the motor's; 0 with the frequency held, absent for a direct drive
-  bool regular = true;  ///< as in OrbitGradient
+  std::array<double, metric_count> by_voltage{};  ///< by the motor's; 0 unless it is held, absent for a direct drive
+  bool regular = true;                            ///< as in OrbitGradient
 };
 
 /// orbit_gradient() of a design for any number of parameters, gradient_parameters at a time. A parameter that the

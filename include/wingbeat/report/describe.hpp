@@ -7,6 +7,7 @@ namespace wingbeat {
 
 struct DesignPoint;
 struct EnduranceResult;
+struct Hold;
 struct RunResult;
 struct SearchFinding;
 struct UnreachedRow;
@@ -14,6 +15,8 @@ struct UnreachedRow;
 /// What the search found, or which frequencies or lifts can be reached: "60 Hz cannot be reached inside the domain of
 /// validity: at ...".
 std::string describe(const SearchFinding& finding);
+/// What a study holds: "flapping held at 22 Hz".
+std::string describe(const Hold& hold);
 
 /// What shows the status, or why the frequency or the lift asked for cannot be reached.
 std::string describe(const RunResult& result);

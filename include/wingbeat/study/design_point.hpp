@@ -10,6 +10,7 @@
 #include "wingbeat/cycle/steady_options.hpp"
 #include "wingbeat/study/flight_metrics.hpp"
 #include "wingbeat/study/frequency_search.hpp"
+#include "wingbeat/study/hold.hpp"
 #include "wingbeat/study/sweep_status.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
@@ -19,17 +20,17 @@ struct DesignParameter;
 
 struct DesignPointOptions {
   Condition condition = Condition::air;
-  std::optional<double> frequency = {};  ///< held [Hz]; the voltage follows
-  double tolerance = 1e-6;               ///< of the orbit
-  bool peaks = true;                     ///< differentiate metrics that are peaks
-  FlightMetrics flight = {};             ///< of a vehicle on a battery: Metric::hover, Metric::endurance, too
+  std::optional<Hold> hold = {};  ///< the voltage follows
+  double tolerance = 1e-6;        ///< of the orbit
+  bool peaks = true;              ///< differentiate metrics that are peaks
+  FlightMetrics flight = {};      ///< of a vehicle on a battery: Metric::hover, Metric::endurance, too
 };
 
 /// What a design does, and how its metrics change with parameters; in words: describe() of report/describe.hpp.
 struct DesignPoint {
   SweepStatus status = SweepStatus::invalid;
   StatusEvidence evidence;               ///< what shows the status, unless one of the next two does
-  std::optional<SearchFinding> refused;  ///< why the frequency cannot be held
+  std::optional<SearchFinding> refused;  ///< why a frequency or a lift cannot be held
   std::string error;                     ///< what() of the ParameterError of an invalid design
   Metrics<double> metrics;               ///< all absent unless flapping
   DomainStatus domain;                   ///< limits of the model that are exceeded; none unless flapping

@@ -1,23 +1,26 @@
-// Many vehicles, each held at a flapping frequency by its voltage.
+// Many vehicles, each held at a flapping frequency or a lift by its voltage.
 #pragma once
 
 #include <span>
-#include <vector>
 
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/ensemble/ensemble_member.hpp"
-#include "wingbeat/study/frequency_search.hpp"
+#include "wingbeat/study/hold.hpp"
 
 namespace wingbeat {
 
-/// As solve_ensemble, with the voltage of each member replaced by the one at which it flaps at its frequency [Hz];
-/// Metric::voltage holds it. Where there is none, `reached` says why, the outcome has the status of FrequencySearch and
-/// no metrics. The range is SearchRange::extrapolation: whether a cycle lies inside the domain of validity is for the
-/// caller to assess, as at a held voltage. All members of a call are searched together by batches;
-/// find_voltage_for_frequency settles the rest. The members' voltages are changed. Throws as solve_ensemble does, and
-/// ParameterError unless every frequency is > 0.
-void solve_ensemble_at_frequency(std::span<EnsembleMember> members, std::span<const double> frequencies,
-                                 const EnsembleOptions& options, const StartUp& start_up,
-                                 std::span<EnsembleOutcome> outcomes, std::span<FrequencyOutcome> reached);
+/// As solve_ensemble, with the voltage of each member replaced by the one that find_voltage() finds for its Hold, to
+/// within the tolerance; Metric::voltage has it. Where there is none, `reached` is not FrequencyOutcome::reached, and
+/// the outcome has the status of FrequencySearch and no metrics. Which of the outcomes beside `reached` it is may
+/// differ from the search of one where a lift is refused. At a held frequency, whether a cycle lies inside the domain
+/// of validity is for the caller to assess, as at a held voltage.
+///
+/// All members of a call are searched together by batches; find_voltage() settles what they cannot: wings on hinges and
+/// direct drives, where a lift is held, and lifts that a lower voltage may yield as well. The members' voltages are
+/// changed. Throws as solve_ensemble does, and ParameterError unless every value is > 0 and all hold a frequency or all
+/// a lift.
+void solve_ensemble_held(std::span<EnsembleMember> members, std::span<const Hold> holds, const EnsembleOptions& options,
+                         const StartUp& start_up, std::span<EnsembleOutcome> outcomes,
+                         std::span<FrequencyOutcome> reached);
 
 }  // namespace wingbeat

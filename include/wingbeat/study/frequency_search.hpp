@@ -12,6 +12,7 @@ namespace wingbeat {
 /// Where an answer may lie.
 enum class SearchRange {
   domain,        ///< inside the domain of validity (cycle/domain.hpp)
+  coefficients,  ///< where the force coefficients hold: of the domain, the angle of attack and the flow speed alone
   extrapolation  ///< also outside, down to extrapolation_angle_deg and up to extrapolation_flow_speed
 };
 

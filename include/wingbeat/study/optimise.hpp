@@ -91,7 +91,7 @@ struct OptimiseResult {
   Outcome outcome = Outcome::nothing_flaps;
   ScreenCounts screen;
   std::vector<double> parameters;  ///< of the optimum [SI]
-  Design<double> design;           ///< with them; where the frequency is held, with the voltage found
+  Design<double> design;           ///< with them; where something is held, with the voltage found
   DesignPoint point;
   std::vector<ActiveLimit> active;
   std::vector<FlatDirection> directions;                ///< flattest first; empty where active limits leave no freedom

@@ -60,7 +60,7 @@ struct ParetoVehicle {
 struct ParetoStudy {
   std::vector<ParetoVehicle> vehicles;
   Condition condition = Condition::air;
-  std::optional<double> frequency;          ///< held [Hz]
+  std::optional<Hold> hold;                 ///< the voltage follows
   double tolerance = 1e-8;                  ///< of the orbits of the front
   std::vector<ParetoObjective> objectives;  ///< two or three
   std::vector<OptimisedParameter> parameters;
@@ -101,7 +101,7 @@ ParetoResult pareto_front(const ParetoStudy& study, Evolve evolve, const StartUp
                           const ForEach& for_each = {},
                           const std::function<void(std::uint64_t, std::uint64_t)>& progress = {});
 
-/// A design of the result as a vehicle; where the frequency is held, with the voltage that gives it.
+/// A design of the result as a vehicle; where something is held, with the voltage found for it.
 Design<double> vehicle_of(const ParetoStudy& study, const ParetoDesign& design);
 
 }  // namespace wingbeat

@@ -9,7 +9,7 @@
 
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/ensemble/ensemble_member.hpp"
-#include "wingbeat/study/frequency_search.hpp"
+#include "wingbeat/study/hold.hpp"
 #include "wingbeat/study/sampling.hpp"
 #include "wingbeat/study/sweep_status.hpp"
 #include "wingbeat/vehicle/design.hpp"
@@ -19,9 +19,9 @@ namespace wingbeat {
 /// One thing that varies along an axis.
 struct SweptQuantity {
   enum class Kind {
-    number,     ///< a parameter of the design, through `set`
-    frequency,  ///< the flapping frequency to be held [Hz]
-    choice      ///< a choice without a number: condition, springs on or off, a text key; see Sweep::variants
+    number,  ///< a parameter of the design, through `set`
+    held,    ///< what Sweep::hold holds: its value varies
+    choice   ///< a choice without a number: condition, springs on or off, a text key; see Sweep::variants
   };
   Kind kind = Kind::number;
   std::string key;      ///< as in the study file: "transmission.crank_radius", "condition"
@@ -59,7 +59,7 @@ struct Sweep {
   std::vector<SweepAxis> axes;  ///< the last varies fastest
   std::vector<SweepVariant> variants;
   std::vector<std::uint64_t> variant_stride;  ///< of each axis in `variants`; 0 for an axis without choices
-  std::optional<double> frequency;            ///< held frequency [Hz]; an axis may hold it instead
+  std::optional<Hold> hold;                   ///< its value may be an axis instead
   EnsembleOptions options;
   bool allow_extrapolation = false;  ///< designs outside the model's domain count as best, feasible, ... too
 
@@ -73,7 +73,7 @@ std::vector<std::uint64_t> places(const Sweep& sweep, std::uint64_t index);
 struct SweepDesign {
   Design<double> design;
   Condition condition = Condition::air;
-  std::optional<double> frequency;
+  std::optional<Hold> hold;
 };
 SweepDesign design_at(const Sweep& sweep, std::uint64_t index);
 
@@ -109,11 +109,10 @@ class SweepSolver {
   const Sweep& sweep_;
   StartUp start_up_;
   std::vector<int> kept_;  ///< metrics
-  bool holds_frequency_;
   std::vector<SweepVariant> variants_;
   std::vector<EnsembleMember> members_;
   std::vector<std::size_t> rows_;  ///< of the members
-  std::vector<double> frequencies_;
+  std::vector<Hold> holds_;
   std::vector<EnsembleOutcome> outcomes_;
   std::vector<FrequencyOutcome> reached_;
 };

@@ -41,7 +41,7 @@ struct ToleranceStudy {
   std::string title;
   Design<double> design;
   Condition condition = Condition::air;
-  std::optional<double> frequency;  ///< held [Hz]
+  std::optional<Hold> hold;  ///< the voltage follows
   EnsembleOptions options;
   std::vector<UncertainParameter> parameters;
   std::vector<std::vector<double>> covariance;  ///< of the correlated parameters, in their order [SI]; or empty

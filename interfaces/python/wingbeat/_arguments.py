@@ -22,6 +22,10 @@ if TYPE_CHECKING:
 _MAX_THREADS = 4096
 
 
+#: What a voltage can be found for, and its unit.
+HELD = {"frequency": "Hz", "lift": "N", "lift_to_weight": "1"}
+
+
 def wrong_type(name: str, expected: str, value: object) -> TypeError:
     """A TypeError for an argument."""
     return TypeError(f"{name}: expected {expected}, got {type(value).__name__}")
@@ -147,6 +151,19 @@ def optional_number(name: str, value: Any, unit: str) -> float | None:
 def numbers_of(**given: tuple[Any, str]) -> tuple[float, ...]:
     """The SI numbers of options, each its value and its unit, in their order."""
     return tuple(number(name, value, unit) for name, (value, unit) in given.items())
+
+
+def one_of(**asked: Any) -> None:
+    """Refuses all but the first of options that exclude each other; None: not asked for."""
+    given = [name for name, value in asked.items() if value is not None]
+    if len(given) > 1:
+        raise refused(given[1], f"cannot be asked for beside {given[0]}; give one of {', '.join(asked)}")
+
+
+def held_by(**asked: Any) -> dict[str, float]:
+    """What designs are held at by their voltage: the one of HELD that is asked for, if any [SI]."""
+    one_of(**asked)
+    return {name: number(name, value, HELD[name]) for name, value in asked.items() if value is not None}
 
 
 def array(name: str, values: Any, unit: str = "") -> npt.NDArray[np.float64]:

@@ -29,6 +29,7 @@ def run(
     tolerance: float,
     frequency: float | None,
     lift: float | None,
+    lift_to_weight: float | None,
     allow_extrapolation: bool,
     points: int,
     endurance: bool,
@@ -38,7 +39,9 @@ def gradient(
     keys: Sequence[str],
     condition: str,
     tolerance: float,
-    frequency: float | None,
+    held: str,
+    held_value: float,
+    allow_extrapolation: bool,
     endurance: bool,
 ) -> dict[str, Any]: ...
 def mechanism_svg(design: Design, stroke_amplitude: float) -> str: ...
@@ -120,6 +123,7 @@ def linearise(
     condition: str,
     frequency: float | None,
     lift: float | None,
+    lift_to_weight: float | None,
     allow_extrapolation: bool,
     cycles: int,
     hinge_offset: float,

@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import (
-    array, callback, mapping, names, number, optional_number, refused, text, threads_of, wrong_type,
+    HELD, array, callback, flag, held_by, mapping, names, number, one_of, refused, text, threads_of, wrong_type,
 )
 from ._operations import operation
 from ._progress import shown
@@ -90,7 +90,7 @@ class Ensemble:
     ) -> npt.NDArray[np.float64]:
         """Exact derivatives of metrics by numeric keys of the vehicle, of every design, on all cores.
 
-        The voltage is held; where the designs were solved at a frequency, the frequency is. NaN for designs that do not
+        The voltage is held; where the designs were solved at a frequency or a lift, that is. NaN for designs that do not
         flap and for metrics without derivatives (floquet_multiplier_max). The keys need not be columns.
 
         Parameters
@@ -165,7 +165,7 @@ def is_columns(value: Any) -> bool:
 
 def _unit(key: str) -> str:
     """That of a column of numbers; "" for what is no column of numbers."""
-    return "Hz" if key == "frequency" else parameters[key].unit if key in parameters else ""
+    return HELD[key] if key in HELD else parameters[key].unit if key in parameters else ""
 
 
 def _is_column(values: Any) -> bool:
@@ -183,6 +183,9 @@ def solve_columns(
     *,
     vehicle: Vehicle | None = None,
     frequency: float | str | None = None,
+    lift: float | str | None = None,
+    lift_to_weight: float | None = None,
+    allow_extrapolation: bool = False,
     condition: str = "air",
     tolerance: float = 1e-6,
     metrics: Iterable[str] | None = None,
@@ -194,9 +197,13 @@ def solve_columns(
     Parameters
     ----------
     columns : a dict or DataFrame with an array of SI numbers (or of texts with units) for each numeric key that varies;
-        other values hold for all designs. The key "frequency" is a flapping frequency to be held [Hz].
+        other values hold for all designs. The key "frequency" is a flapping frequency to be held [Hz], "lift" and
+        "lift_to_weight" are held likewise.
     vehicle : what the other keys are; not needed where the columns state a whole vehicle
     frequency : [Hz], held by all designs: the voltage is found for each
+    lift : [N], the same for the mean lift: the lowest voltage that yields it
+    lift_to_weight : the same for the lift over the weight; 1: hover
+    allow_extrapolation : a search for a lift may leave the model's domain
     condition : "air", "vacuum" or "wingless"
     tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
     metrics : those wanted, fewer cost less; default: all but hover and endurance
@@ -227,8 +234,10 @@ def solve_columns(
     given = mapping("columns", {key: columns[key] for key in columns})
     if vehicle is not None:
         vehicle_of(vehicle)
-    if frequency is not None and given.get("frequency") is not None:
-        raise refused("frequency", "is given in the columns and beside them")
+    asked = {"frequency": frequency, "lift": lift, "lift_to_weight": lift_to_weight}
+    for name, value in asked.items():
+        if value is not None and given.get(name) is not None:
+            raise refused(name, "is given in the columns and beside them")
     varied = {
         key: array(key, values, _unit(key)) for key, values in given.items() if _unit(key) and _is_column(values)
     }
@@ -236,11 +245,12 @@ def solve_columns(
         if len(column) == 0:
             raise refused(key, "expected a value for each design, got none")
     held = {key: values for key, values in given.items() if key not in varied}
-    frequency = held.pop("frequency", frequency)
-    tolerance, held_frequency = number("tolerance", tolerance, "1"), optional_number("frequency", frequency, "Hz")
+    one_of(**{name: given.get(name, value) for name, value in asked.items()})
+    hold = held_by(**{name: held.pop(name, value) for name, value in asked.items()})
+    tolerance, anywhere = number("tolerance", tolerance, "1"), flag("allow_extrapolation", allow_extrapolation)
     condition, threads = text("condition", condition), threads_of(threads)
     if vehicle is None:
-        first_row = {key: values[0] for key, values in varied.items() if key != "frequency"}
+        first_row = {key: values[0] for key, values in varied.items() if key not in HELD}
         vehicle = Vehicle({**held, **first_row})
     elif held:
         vehicle = vehicle.replace(held)
@@ -257,7 +267,7 @@ def solve_columns(
     for key, values in varied.items():
         own = vehicle[key] if key in parameters else None
         row[key] = float(values[0]) if own is None else float(own)
-    study = study_of_columns(row, tolerance=tolerance, metrics=metrics, frequency=held_frequency)
+    study = study_of_columns(row, tolerance=tolerance, metrics=metrics, hold=hold, anywhere=anywhere)
     with without_place("columns"), shown(callback(progress), count) as tell:
         inputs = [column.copy() for column in varied.values()], count, condition
         found = _core.solve_columns(study, vehicle._design, *inputs, threads, tell)

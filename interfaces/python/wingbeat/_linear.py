@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from . import _core
-from ._arguments import flag, number, optional_number, text, whole
+from ._arguments import flag, number, one_of, optional_number, text, whole
 from ._operations import operation
-from ._result import one_of
 from ._studies import StudyResult
 from ._vehicle import Vehicle, vehicle_of
 

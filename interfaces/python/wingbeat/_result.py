@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import (
-    flag, names, number, numbers_of, optional_number, refused, text, wrong_type,
+    HELD, flag, names, number, numbers_of, one_of, optional_number, refused, text, wrong_type,
 )
 from ._ensemble import Ensemble, is_columns, solve_columns
 from ._metrics import WithMetrics
@@ -128,7 +128,7 @@ class RunResult(WithMetrics):
         if self._cycle is None:
             if self.status != "flapping":
                 raise ValueError(f"there is no cycle: {self.evidence}")
-            options: dict[str, Any] = {**self._options, "frequency": None, "lift": None, "points": CYCLE_POINTS, "endurance": False}
+            options: dict[str, Any] = {**self._options, **dict.fromkeys(HELD), "points": CYCLE_POINTS, "endurance": False}
             self._cycle = _waveform(_core.run(self.vehicle._design, **options)["cycle"])
         return self._cycle
 
@@ -139,8 +139,8 @@ class RunResult(WithMetrics):
     def gradient(self, metric: str, keys: str | list[str] | tuple[str, ...]) -> float | npt.NDArray[np.float64]:
         """Exact derivatives of a metric by numeric keys of the vehicle, SI per SI, in the order of `keys`.
 
-        The voltage is held; where the result was asked for by its frequency, the frequency is. NaN unless flapping,
-        and for metrics without derivatives (floquet_multiplier_max).
+        The voltage is held; where the result was asked for by its frequency or lift, that is. NaN unless flapping, and
+        for metrics without derivatives (floquet_multiplier_max).
 
         Parameters
         ----------
@@ -168,7 +168,9 @@ class RunResult(WithMetrics):
             [text("keys", keys)] if isinstance(keys, str) else names("keys", keys),
             condition=options["condition"],
             tolerance=options["tolerance"],
-            frequency=options["frequency"],
+            held=next((name for name in HELD if options[name] is not None), ""),
+            held_value=next((options[name] for name in HELD if options[name] is not None), 0.0),
+            allow_extrapolation=options["allow_extrapolation"],
             endurance=metric_rows[index].name in ("hover", "endurance"),
         )
         slopes: npt.NDArray[np.float64] = found["gradients"][:, index].copy()
@@ -219,6 +221,7 @@ def solve(
     voltage: float | str | None = None,
     frequency: float | str | None = None,
     lift: float | str | None = None,
+    lift_to_weight: float | None = None,
     condition: str = "air",
     method: str = "orbit",
     tolerance: float = 1e-6,
@@ -237,6 +240,7 @@ def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult 
     voltage : the supply's [V], in place of the vehicle's
     frequency : [Hz], in place of a voltage: the voltage is found that yields it (a direct drive's supply has it)
     lift : [N], in place of either: the voltage (pwm: the duty) is found that yields this mean lift
+    lift_to_weight : the same for the lift over the weight; 1: hover
     condition : "air", "vacuum" or "wingless"
     method : "orbit", or "transient": simulated from rest
     tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
@@ -249,7 +253,8 @@ def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult 
 
     Raises
     ------
-    InputError : for options that cannot be used, and for more than one of voltage, frequency and lift
+    InputError : for options that cannot be used, and for more than one of voltage, frequency, lift and
+        lift_to_weight
     TypeError : for what is neither a vehicle nor columns
 
     Example
@@ -268,32 +273,27 @@ def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult 
     return solve_columns(vehicle, **options)
 
 
-def one_of(**asked: Any) -> None:
-    """Refuses all but the first of options that exclude each other; None: not asked for."""
-    given = [name for name, value in asked.items() if value is not None]
-    if len(given) > 1:
-        raise refused(given[1], f"cannot be asked for beside {given[0]}; give one of {', '.join(asked)}")
-
-
 def _solve(
     vehicle: Vehicle,
     *,
     voltage: float | str | None = None,
     frequency: float | str | None = None,
     lift: float | str | None = None,
+    lift_to_weight: float | None = None,
     condition: str = "air",
     method: str = "orbit",
     tolerance: float = 1e-6,
     allow_extrapolation: bool = False,
     endurance: bool = False,
 ) -> RunResult:
-    one_of(voltage=voltage, frequency=frequency, lift=lift)
+    one_of(voltage=voltage, frequency=frequency, lift=lift, lift_to_weight=lift_to_weight)
     options: dict[str, Any] = {
         "condition": text("condition", condition),
         "method": text("method", method),
         "tolerance": number("tolerance", tolerance, "1"),
-        "frequency": optional_number("frequency", frequency, "Hz"),
-        "lift": optional_number("lift", lift, "N"),
+        "frequency": optional_number("frequency", frequency, HELD["frequency"]),
+        "lift": optional_number("lift", lift, HELD["lift"]),
+        "lift_to_weight": optional_number("lift_to_weight", lift_to_weight, HELD["lift_to_weight"]),
         "allow_extrapolation": flag("allow_extrapolation", allow_extrapolation),
         "points": 0,
         "endurance": flag("endurance", endurance),
@@ -301,7 +301,7 @@ def _solve(
     if voltage is not None:
         vehicle = vehicle.replace({"supply.voltage": voltage})
     found = _core.run(vehicle._design, **options)
-    if frequency is not None or lift is not None:
+    if any(options[name] is not None for name in HELD):
         vehicle = type(vehicle)._of(found["design"])
     return RunResult(found, vehicle, options)
 

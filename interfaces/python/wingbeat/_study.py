@@ -19,35 +19,45 @@ def study_of(
     title: str = "",
     tolerance: float = 1e-6,
     metrics: Iterable[str] | None = None,
-    frequency: float | None = None,
+    hold: Mapping[str, float],
+    anywhere: bool,
 ) -> str:
     """The study file of a sweep over all combinations of values of keys."""
-    lines = _study(title, tolerance, metrics, frequency)
+    lines = _study(title, tolerance, metrics, hold, anywhere)
     for key, values in axes.items():
         lines += ["", "[[axis]]", f"key = {_core.toml(key)}", f"values = {_core.toml(plain(values, key))}"]
     return "\n".join(lines) + "\n"
 
 
 def study_of_columns(
-    row: Mapping[str, float], *, tolerance: float, metrics: Iterable[str] | None, frequency: float | None
+    row: Mapping[str, float],
+    *,
+    tolerance: float,
+    metrics: Iterable[str] | None,
+    hold: Mapping[str, float],
+    anywhere: bool,
 ) -> str:
     """The study file of a single design, with one axis of all keys that vary."""
-    lines = _study("", tolerance, metrics, frequency)
+    lines = _study("", tolerance, metrics, hold, anywhere)
     lines += ["", "[[axis]]", 'name = "design"', f"keys = {_core.toml(list(row))}"]
     values = list(row.values())
     lines.append(f"values = {_core.toml([[value] for value in values] if len(values) > 1 else values)}")
     return "\n".join(lines) + "\n"
 
 
-def _study(title: str, tolerance: float, metrics: Iterable[str] | None, frequency: float | None) -> list[str]:
+def _study(
+    title: str, tolerance: float, metrics: Iterable[str] | None, hold: Mapping[str, float], anywhere: bool
+) -> list[str]:
     lines = ["[study]", 'vehicle = "vehicle"', f"tolerance = {_core.toml(tolerance)}"]
     if text("title", title):
         lines.append(f"title = {_core.toml(title)}")
     if metrics is not None:
         wanted = [metric_rows[metric_called(name)].key for name in names("metrics", metrics)]
         lines.append(f"metrics = {_core.toml(wanted)}")
-    if frequency is not None:
-        lines.append(f"hold = {{ frequency = {_core.toml(frequency)} }}")
+    if anywhere:
+        lines.append("allow_extrapolation = true")
+    for key, value in hold.items():
+        lines.append(f"hold = {{ {key} = {_core.toml(value)} }}")
     return lines
 
 

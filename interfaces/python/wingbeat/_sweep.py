@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from . import _core
 from ._arguments import (
-    axis_values, callback, flag, mapping, number, optional_number, path, refused, text, threads_of,
+    HELD, axis_values, callback, flag, held_by, mapping, number, path, refused, text, threads_of,
 )
 from ._operations import operation
 from ._progress import shown
@@ -34,6 +34,9 @@ def sweep(
     *,
     output: str | os.PathLike[str] | None = None,
     frequency: float | str | None = None,
+    lift: float | str | None = None,
+    lift_to_weight: float | None = None,
+    allow_extrapolation: bool = False,
     tolerance: float = 1e-6,
     metrics: Iterable[str] | None = None,
     title: str = "",
@@ -46,11 +49,14 @@ def sweep(
     Parameters
     ----------
     vehicle : a Vehicle
-    axes : keys of the vehicle, "frequency", "condition" or "springs", each with its values: SI numbers, texts with
-        units, names; the last varies fastest
+    axes : keys of the vehicle, "frequency", "lift", "lift_to_weight", "condition" or "springs", each with its values:
+        SI numbers, texts with units, names; the last varies fastest
     output : a file (.nc) that keeps the data set, as `wingbeat sweep -o` writes it: interrupted, the same call goes on
         from what is there. Without it nothing is left on the disk.
     frequency : [Hz], held by all designs: the voltage is found for each
+    lift : [N], the same for the mean lift: the lowest voltage that yields it
+    lift_to_weight : the same for the lift over the weight; 1: hover
+    allow_extrapolation : a search for a lift may leave the model's domain
     tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
     metrics : those wanted; default: all that the vehicle has but hover and endurance
     title : of the data set
@@ -80,14 +86,17 @@ def sweep(
     """
     design, threads, replaces = vehicle_of(vehicle)._design, threads_of(threads), flag("force", force)
     values = {key: axis_values(key, along, _is_number(key)) for key, along in mapping("axes", axes).items()}
-    if frequency is not None and "frequency" in values:
-        raise refused("frequency", "is an axis, and held beside it")
+    hold = held_by(frequency=frequency, lift=lift, lift_to_weight=lift_to_weight)
+    for name in hold:
+        if name in values:
+            raise refused(name, "is an axis, and held beside it")
     study = study_of(
         values,
         title=text("title", title),
         tolerance=number("tolerance", tolerance, "1"),
         metrics=metrics,
-        frequency=optional_number("frequency", frequency, "Hz"),
+        hold=hold,
+        anywhere=flag("allow_extrapolation", allow_extrapolation),
     )
     total = math.prod(len(along) for along in values.values())
     kept = None if output is None else path("output", output)
@@ -102,7 +111,7 @@ def sweep(
 
 
 def _is_number(key: str) -> bool:
-    return key == "frequency" or (key in parameters and bool(parameters[key].unit))
+    return key in HELD or (key in parameters and bool(parameters[key].unit))
 
 
 def open_dataset(file: str | os.PathLike[str]) -> SweepData:

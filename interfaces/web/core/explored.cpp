@@ -119,7 +119,7 @@ Json started(const Design<double>& design, const RunOptions& options, Columns& c
 Json differentiated(const Design<double>& design, const std::vector<std::string>& keys, const RunOptions& options) {
   DesignPointOptions point;
   point.condition = options.condition;
-  point.frequency = options.frequency;
+  if (options.frequency) point.hold = Hold{Held::frequency, *options.frequency};
   point.tolerance = options.tolerance;
   const DesignPoint found = gradient(design, keys, point);
   Slopes slopes{name_of(found.status), describe(found), {}};
