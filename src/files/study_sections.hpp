@@ -107,7 +107,7 @@ class StudySections : public TomlReader {
   /// What is held but for the voltage, if anything. A vehicle that cannot hold it, or that has no steady flapping, is
   /// refused.
   std::optional<Hold> read_hold(const Design<double>& design) const;
-  /// The same of a study that holds something.
+  /// What a study holds that has such a key; without a check of the vehicle.
   Hold held_target() const;
   /// A number of the vehicle that can be varied and differentiated.
   DesignParameter parameter_named(const TomlNode& node, const std::string& where, const Design<double>& design) const;

@@ -191,10 +191,10 @@ bool peak_is_too_low(std::vector<Trial> lifts) {
   const double right = (c.gap - b.gap) / (c.ln_voltage - b.ln_voltage);
   const double bend = (right - left) / (c.ln_voltage - a.ln_voltage);
   if (!(bend < 0.0)) return false;
-  const double at = 0.5 * (a.ln_voltage + b.ln_voltage) - 0.5 * left / bend;
-  const double peak = a.gap + (at - a.ln_voltage) * (left + bend * (at - b.ln_voltage));
+  const double ln_peak = 0.5 * (a.ln_voltage + b.ln_voltage) - 0.5 * left / bend;
+  const double peak = a.gap + (ln_peak - a.ln_voltage) * (left + bend * (ln_peak - b.ln_voltage));
   const double highest = std::max({a.gap, b.gap, c.gap}), lowest = std::min({a.gap, b.gap, c.gap});
-  const bool between = at > a.ln_voltage && at < c.ln_voltage;
+  const bool between = ln_peak > a.ln_voltage && ln_peak < c.ln_voltage;
   return between && peak + std::max(0.5 * (highest - lowest), 1e-4) < 0.0;
 }
 
@@ -294,8 +294,10 @@ class HeldEnsemble {
     };
     EnsembleOptions complete = options_;
     complete.metrics = assessed_metrics(options_.metrics);
-    try_some({searches_.begin(), answers}, trial_options(round));
-    try_some({answers, searches_.end()}, complete);
+    const std::size_t first_answer = std::size_t(answers - searches_.begin());
+    const std::span<const EnsembleSearch> all = searches_;
+    try_some(all.first(first_answer), trial_options(round));
+    try_some(all.subspan(first_answer), complete);
     searches_ = std::move(going_on);
   }
 
