@@ -11,6 +11,7 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/minimise.hpp"
+#include "wingbeat/solve/falling_zero.hpp"
 #include "wingbeat/solve/iterate_record.hpp"
 #include "wingbeat/solve/step_error.hpp"
 
@@ -334,13 +335,10 @@ class IterateDriver {
   /// Shortens the step to end where switch k changes sign; false if that is at its very start.
   bool locate(std::size_t k, double& step, StepResult<System>& result, Rates<System>& last) {
     const double whole = step;
-    const State y1 = result.y;
-    const State dy1 = last.dy;
     const auto value = [&](double advance) {
-      const State y = hermite<System>(y_, first_.dy, y1, dy1, whole, advance / whole);
+      const State y = hermite<System>(y_, first_.dy, result.y, last.dy, whole, advance / whole);
       return system_.template rates<false>(x_ + advance, y, signs_).switches[k] * signs_[k];
     };
-    // Illinois: keeps the bracket, converges superlinearly.
     double lo = 0.0, hi = whole;
     double f_lo = first_.switches[k] * signs_[k], f_hi = last.switches[k] * signs_[k];
     if (is_about_zero(f_lo, k) && value(beside(whole) * whole) > std::max(f_lo, 0.0)) {
@@ -359,29 +357,7 @@ class IterateDriver {
       hi = lowest_within(k, 0.5, 1.0, whole, result, last) * whole;
       f_hi = value(hi);
     }
-    const double close_enough = 0.1 * position_tolerance_;
-    double root = hi, slope = (f_hi - f_lo) / whole;
-    for (int iteration = 0, side = 0; iteration < 60 && hi - lo > close_enough; ++iteration) {
-      // A start next to a zero of the same switch would draw the secant there.
-      const bool from_zero = f_lo < 0.1 * std::abs(f_hi) && iteration < 20 && hi - lo > 0.1 * whole;
-      const double next = from_zero ? 0.5 * (lo + hi) : (lo * f_hi - hi * f_lo) / (f_hi - f_lo);
-      const double f = value(next);
-      if (next != root && iteration > 0) slope = (f - (root == hi ? f_hi : f_lo)) / (next - root);
-      const double moved = std::abs(next - root);
-      root = next;
-      if (f < 0.0) {
-        hi = next;
-        f_hi = f;
-        if (side == -1) f_lo *= 0.5;
-        side = -1;
-      } else {
-        lo = next;
-        f_lo = f;
-        if (side == 1) f_hi *= 0.5;
-        side = 1;
-      }
-      if (f == 0.0 || (iteration > 0 && !from_zero && moved < close_enough)) break;
-    }
+    auto [root, slope] = falling_zero(value, lo, f_lo, hi, f_hi, whole, 0.1 * position_tolerance_);
     if (root < 1e-3 * position_tolerance_) return false;
     // The Hermite state is of lower order than the step: correct with steps that end at the switch.
     const int corrections = jumps(system_, k) ? 12 : 4;
