@@ -148,7 +148,7 @@ void advance(EnsembleSearch& s, bool flaps, double value, int round, double clos
   } else if (s.low == 0.0) {
     s.next = std::clamp(guess, 0.5 * tried, tried);
   } else {
-    const bool inside = guess > s.low && guess < s.high;
+    const bool inside = guess >= s.low && guess <= s.high;
     const bool halves = !inside || (round % 6 == 5 && !s.is_last);
     s.next = halves ? 0.5 * (s.low + s.high) : guess;
     s.is_last = s.is_last && !halves;
@@ -339,8 +339,8 @@ class HeldEnsemble {
   /// decides.
   bool goes_on_below(EnsembleSearch& s, const EnsembleOutcome& result) {
     constexpr int max_returns = 8, steps = 40;
-    constexpr double near = 0.93;    // shares of the stroke velocity from which the shape gives the peak to
-    constexpr double margin = 1.02;  // this
+    constexpr double near = 0.93;    // from a trial at this share of its stroke velocity or closer,
+    constexpr double margin = 1.02;  // the shape gives the largest lift to within this factor
     const BladeElement<double>& w = members_[s.member].vehicle.wings;
     const double peak = result.metrics[Metric::flapping_velocity_peak], lift = result.metrics[Metric::lift_mean];
     const double fastest = std::min(stroke_speed_at(w, 0.0), flow_speed_max * w.s2 / w.s3);

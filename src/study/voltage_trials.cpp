@@ -7,6 +7,25 @@
 #include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat::detail {
+namespace {
+
+/// By how much a cycle exceeds the limits of a range; of ranges beside the domain, angle of attack and flow speed
+/// alone.
+DomainExcess excess_over(SearchRange range, double angle_of_attack_deg, const DomainExcess& of_domain) {
+  if (range == SearchRange::domain) return of_domain;
+  const bool far = range == SearchRange::extrapolation;
+  const double lowest = far ? extrapolation_angle_deg : angle_of_attack_lowest_deg;
+  const double fastest = far ? extrapolation_flow_speed : flow_speed_max;
+  const double speed = (of_domain[std::size_t(DomainLimit::flow_speed)] + 1.0) * flow_speed_max;
+  DomainExcess excess;
+  excess.fill(-1.0);
+  excess[std::size_t(DomainLimit::angle_of_attack)] =
+      (lowest - angle_of_attack_deg) / (far ? -extrapolation_angle_deg : angle_of_attack_highest_deg);
+  excess[std::size_t(DomainLimit::flow_speed)] = speed / fastest - 1.0;
+  return excess;
+}
+
+}  // namespace
 
 VoltageTrials::VoltageTrials(const Vehicle<double>& vehicle, const SteadyOptions& options, const StartUp& start_up,
                              SearchRange range, bool slopes, bool simulate)
@@ -56,27 +75,16 @@ VoltageTrial VoltageTrials::at(double voltage) {
       trial.lift_slope = lift_slope * voltage;
     }
   }
-  DomainExcess excess = domain_excess(vehicle_, m);
-  const bool domain = range_ != SearchRange::extrapolation;
-  const double alpha = m[Metric::angle_of_attack_min];
-  const double flow = excess[std::size_t(DomainLimit::flow_speed)];
-  const double heat = excess[std::size_t(DomainLimit::winding_temperature)];
-  trial.beyond = domain
-                     ? alpha < angle_of_attack_lowest_deg || flow > 0.0 || (heat > 0.0 && range_ == SearchRange::domain)
-                     : alpha < extrapolation_angle_deg || flow > extrapolation_flow_speed / flow_speed_max - 1.0;
-  if (!domain) {
-    excess.fill(-1.0);
-    excess[std::size_t(DomainLimit::angle_of_attack)] = (extrapolation_angle_deg - alpha) / -extrapolation_angle_deg;
-    excess[std::size_t(DomainLimit::flow_speed)] = (flow + 1.0) * flow_speed_max / extrapolation_flow_speed - 1.0;
+  const DomainExcess of_domain = domain_excess(vehicle_, m);
+  trial.excess = excess_over(range_, m[Metric::angle_of_attack_min], of_domain);
+  trial.inside = domain_of(trial.excess).none();
+  trial.beyond = !trial.inside;
+  if (range_ == SearchRange::domain) {
+    const auto exceeds = [&](DomainLimit limit) { return of_domain[std::size_t(limit)] > 0.0; };
+    trial.beyond = m[Metric::angle_of_attack_min] < angle_of_attack_lowest_deg || exceeds(DomainLimit::flow_speed) ||
+                   exceeds(DomainLimit::winding_temperature);
   }
-  if (range_ == SearchRange::coefficients) {
-    excess.fill(-1.0);
-    excess[std::size_t(DomainLimit::angle_of_attack)] = (angle_of_attack_lowest_deg - alpha) / 90.0;
-    excess[std::size_t(DomainLimit::flow_speed)] = flow;
-  }
-  trial.excess = excess;
-  trial.inside = domain ? domain_of(excess).none() : !trial.beyond;
-  if (!trial.inside && domain) trial.limits = domain_evidence(vehicle_, m);
+  if (!trial.inside && range_ != SearchRange::extrapolation) trial.limits = domain_evidence(vehicle_, m);
   return trial;
 }
 
