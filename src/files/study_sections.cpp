@@ -174,6 +174,8 @@ void StudySections::find_hold() {
     held_target_ = target;
     held_key_ = &key;
   }
+  const bool nothing_known = !held_voltage_ && !held_target_ && !hold->members.empty();
+  if (nothing_known) finish();  // which is reported already
   if (bool(held_voltage_) == bool(held_target_)) {
     refuse(*hold, "study.hold", "give one of voltage, frequency, lift and lift_to_weight");
   }
@@ -295,9 +297,7 @@ std::optional<Hold> StudySections::read_hold(const Design<double>& design) const
 Hold StudySections::held_target() const {
   const std::string key = within("study.hold", held_key_->key);
   const double value = quantity(*held_target_, key, held_key_->unit);
-  if (!(value > 0.0)) {
-    refuse(*held_target_, key, must_be_positive(held_key_->unit));
-  }
+  if (!(value > 0.0)) refuse(*held_target_, key, must_be_positive(held_key_->unit));
   return {held_key_->held, value};
 }
 
@@ -310,6 +310,10 @@ const HeldKey* held_key(std::string_view key) {
     if (k.key == key) return &k;
   }
   return nullptr;
+}
+
+const HeldKey& held_key(Held held) {
+  return *std::find_if(std::begin(held_keys), std::end(held_keys), [&](const HeldKey& k) { return k.held == held; });
 }
 
 std::string no_hold(const HeldKey& key, const Design<double>& design) {

@@ -49,6 +49,7 @@ inline constexpr HeldKey held_keys[] = {
 std::string must_be_positive(std::string_view unit);
 /// Null where the key is none of them.
 const HeldKey* held_key(std::string_view key);
+const HeldKey& held_key(Held held);  ///< other than the voltage
 /// Why a vehicle's supply or mass allows no such hold; empty where it does.
 std::string no_hold(const HeldKey& key, const Design<double>& design);
 /// Whether a key of the vehicle has no effect where that is held.

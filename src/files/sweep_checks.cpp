@@ -124,36 +124,37 @@ class SweepChecks {
     return result;
   }
 
+  /// `source_of` gives the place of a key that the study varies.
+  void check_hold(const HeldKey& held, const Design<double>& design,
+                  const std::function<SourceLocation(const char*)>& source_of) const {
+    const std::string why = no_hold(held, design);
+    const bool battery = design.supply.type == SupplyType::battery;
+    const char* blamed = battery ? "supply.type" : "vehicle.mass";
+    if (!why.empty() && (battery || !places_.keys.contains(blamed))) reader_.refuse(source_of(blamed), blamed, why);
+    if (design.supply.type == SupplyType::pwm && !(design.supply.duty > 0.0)) {
+      const char* name = held.held == Held::frequency ? "flapping frequency" : held.name;
+      reader_.refuse(source_of("supply.duty"), "supply.duty", fmt::format("is 0: no voltage sets the {}", name));
+    }
+    const std::string no_effect = fmt::format("has no effect where the {} is held", held.name);
+    for (const char* key : {"supply.frequency", "supply.resonance_ratio"}) {
+      if (held.held == Held::frequency && places_.keys.contains(key)) reader_.refuse(source_of(key), key, no_effect);
+    }
+    for (const char* key : {"supply.voltage", "supply.duty", "supply.amplitude"}) {
+      if (places_.keys.contains(key) && is_void_at(held, key, design)) {
+        reader_.refuse(source_of(key), key, no_effect + ": the voltage is found for it");
+      }
+    }
+  }
+
   void check_supply() const {
     const auto source_of = [&](const char* key) {
       const auto found = places_.keys.find(key);
       return found == places_.keys.end() ? places_.study : found->second;
     };
-    const HeldKey* held = nullptr;
-    for (const HeldKey& key : held_keys) {
-      if (sweep_.hold && sweep_.hold->held == key.held) held = &key;
-    }
+    const HeldKey* held = sweep_.hold ? &held_key(sweep_.hold->held) : nullptr;
     for (const SweepVariant& v : sweep_.variants) {
       if (swings_a_crank(v.design)) reader_.refuse(source_of("supply.type"), "supply.type", no_swinging_crank);
-      if (!held) continue;
-      const std::string why = no_hold(*held, v.design);
-      const bool battery = v.design.supply.type == SupplyType::battery;
-      const char* blamed = battery ? "supply.type" : "vehicle.mass";
-      if (!why.empty() && (battery || !places_.keys.contains(blamed))) reader_.refuse(source_of(blamed), blamed, why);
-      if (v.design.supply.type == SupplyType::pwm && !(v.design.supply.duty > 0.0)) {
-        reader_.refuse(source_of("supply.duty"), "supply.duty",
-                       fmt::format("is 0: no voltage sets the {}",
-                                   held->held == Held::frequency ? "flapping frequency" : held->name));
-      }
-      for (const char* void_key :
-           {"supply.frequency", "supply.resonance_ratio", "supply.voltage", "supply.duty", "supply.amplitude"}) {
-        if (!places_.keys.contains(void_key) || !is_void_at(*held, void_key, v.design)) continue;
-        const char* found = held->held != Held::frequency || drive_of(v.design).voltage_sets_frequency
-                                ? ": the voltage is found for it"
-                                : "";
-        reader_.refuse(source_of(void_key), void_key,
-                       fmt::format("has no effect where the {} is held{}", held->name, found));
-      }
+      if (held) check_hold(*held, v.design, source_of);
     }
     const bool by_axis = sweep_.hold && std::isnan(sweep_.hold->value);
     if (held && !by_axis && places_.set_voltage) {

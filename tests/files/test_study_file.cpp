@@ -239,6 +239,8 @@ TEST_F(StudyFile, WrongStudiesAreRefused) {
       {"hold = { voltage = 3, frequency = 22 }\n" + radius_axis,
        "s.toml:3:1: study.hold: give one of voltage, frequency, lift and lift_to_weight"},
       {"hold = { frequency = 22, lift = 1 }\n" + radius_axis, "s.toml:3:26: study.hold: holds the frequency already"},
+      {"hold = { lift_to_weigth = 1 }\n" + radius_axis,
+       "s.toml:3:10: study.hold.lift_to_weigth: unknown key; did you mean study.hold.lift_to_weight?"},
       {"hold = { lift = \"0 mN\" }\n" + radius_axis, "s.toml:3:10: study.hold.lift: must be > 0 N"},
       {"hold = { lift_to_weight = -1 }\n" + radius_axis, "s.toml:3:10: study.hold.lift_to_weight: must be > 0"},
       {"hold = { lift = \"9 mN\" }\n[[axis]]\nkey = \"supply.voltage\"\nvalues = [1, 2]\n",
