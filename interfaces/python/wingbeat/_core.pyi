@@ -123,7 +123,6 @@ def linearise(
     condition: str,
     frequency: float | None,
     lift: float | None,
-    lift_to_weight: float | None,
     allow_extrapolation: bool,
     cycles: int,
     hinge_offset: float,

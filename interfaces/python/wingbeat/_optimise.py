@@ -211,6 +211,7 @@ class _OwnProblem:
             "tolerance": number("tolerance", tolerance, "1"),
             "frequency": None,
             "lift": None,
+            "lift_to_weight": None,
             "allow_extrapolation": allow_extrapolation,
             "points": 0,
             "endurance": False,
