@@ -40,6 +40,7 @@ std::unique_ptr<CLI::App> command_tree(Action& action) {
   add_compare(*program, action);
   add_sweep(*program, action);
   add_identify_motor(*program, action);
+  add_read_bench(*program, action);
   add_fit(*program, action);
   add_tolerance(*program, action);
   add_optimise(*program, action);
@@ -48,6 +49,7 @@ std::unique_ptr<CLI::App> command_tree(Action& action) {
   add_export_fmu(*program, action);
   add_reproduce(*program, action);
   add_new(*program, action);
+  add_scale(*program, action);
   add_keys(*program, action);
   add_metrics(*program, action);
   add_schema(*program, action);

@@ -1,7 +1,9 @@
-// The columns that a log of a test bench may have.
+// The columns that a log of a test bench may have, and how benches name them.
 #pragma once
 
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "wingbeat/study/bench_fit.hpp"
@@ -19,7 +21,28 @@ struct ColumnName {
 
 /// Of a log with an operating point in each row.
 const std::vector<ColumnName>& metric_columns();
-/// Of a log over one turn of the crank.
+/// Of a log over one turn of the crank, beside the crank angle.
 const std::vector<ColumnName>& waveform_quantities();
+
+/// "current_mean" of "current_mean_a".
+std::string bare_name(std::string_view key);
+
+/// SI value of a number in a column over the number. Throws UnitError for a unit of another kind.
+double column_factor(std::string_view unit, std::string_view expected);
+
+/// The column of a name of the program or of one in use at benches ("current", "thrust"), with or without unit; null
+/// where it is none of them.
+const ColumnName* column_named(std::string_view name, std::span<const ColumnName> known);
+
+struct RecognisedColumn {
+  const ColumnName* column = nullptr;  ///< null: unknown
+  double factor = 1.0;                 ///< SI value over the number
+  std::string unit;                    ///< as written
+  bool renamed = false;                ///< the bench's name is not the program's
+  std::string complaint;               ///< about the unit; empty where there is none
+};
+
+/// What a header means, as "current_mean_mA", "Lift (g)", "U [V]" or "Frequency / Hz".
+RecognisedColumn recognise(std::string_view header, std::span<const ColumnName> known);
 
 }  // namespace wingbeat::detail

@@ -23,9 +23,10 @@ using detail::ColumnName, detail::metric_columns, detail::waveform_quantities;
 
 class BenchReader {
  public:
-  BenchReader(const std::filesystem::path& file, std::span<const std::string> overrides)
+  BenchReader(const std::filesystem::path& file, std::span<const std::string> overrides, std::vector<LogNotes>* notes)
       : path_(file),
         overrides_(overrides),
+        notes_(notes),
         name_(input_name(file)),
         tree_(parse_toml_tree(read_text_file(file), name_)),
         root_(name_, "", tree_) {}
@@ -131,7 +132,8 @@ class BenchReader {
   void read_logs(BenchFit& fit) {
     const bool has_springs = fit.design.spring.stiffness || fit.design.spring.resonance;
     const auto read_one = [&](const TomlFields& l) {
-      const std::string_view keys[] = {"file", "condition", "springs", "given", "measured", "voltage", "frequency"};
+      const std::string_view keys[] = {"file",    "condition", "springs", "given",     "measured",
+                                       "voltage", "frequency", "columns", "separator", "decimal"};
       l.known_keys(keys);
       const std::string file = l.needed_text("file", "the name of a CSV file");
       LogRequest request;
@@ -157,6 +159,7 @@ class BenchReader {
           request.measured.push_back(item.text);
         }
       }
+      read_form(l, request);
       const std::filesystem::path path = path_.parent_path() / file;
       std::string text;
       try {
@@ -164,12 +167,36 @@ class BenchReader {
       } catch (const InputError& error) {
         l.refuse(l.at("file"), "file", error.what());
       }
-      fit.logs.push_back(parse_log(text, path.string(), request));
+      LogNotes understood;
+      fit.logs.push_back(parse_log(text, path.string(), request, &understood));
+      if (notes_) notes_->push_back(std::move(understood));
       check_columns(l, fit);
     };
     const auto sections = root_.tables("log");
     for (const TomlFields& l : sections) errors_.attempt([&] { read_one(l); });
     if (sections.empty()) root_.refuse("log", "missing: what was measured? Give [[log]] sections");
+  }
+
+  /// How the file is written, where it does not show.
+  static void read_form(const TomlFields& l, LogRequest& request) {
+    const auto one_of = [&](const char* key, std::string_view allowed, const char* expected) -> std::optional<char> {
+      const auto text = l.text(key);
+      if (!text) return std::nullopt;
+      if (text->size() != 1 || allowed.find((*text)[0]) == std::string_view::npos) {
+        l.refuse(l.at(key), key, fmt::format("must be {}, got {}", expected, in_quotes(*text)));
+      }
+      return (*text)[0];
+    };
+    request.separator = one_of("separator", ",;\t", "\",\", \";\" or \"\\t\"");
+    request.decimal = one_of("decimal", ".,", "\".\" or \",\"");
+    const TomlNode* columns = l.node().find("columns");
+    if (!columns) return;
+    const char* expected = "expected { \"header in the file\" = \"lift_mean\" }, or \"ignore\"";
+    if (columns->kind != TomlNode::Kind::table) l.refuse(*columns, "columns", expected);
+    for (const auto& [header, name] : columns->members) {
+      if (name.kind != TomlNode::Kind::text) l.refuse(name, "columns", expected);
+      request.columns.emplace_back(header, name.text);
+    }
   }
 
   void check_columns(const TomlFields& l, const BenchFit& fit) const {
@@ -254,6 +281,7 @@ class BenchReader {
 
   std::filesystem::path path_;
   std::span<const std::string> overrides_;
+  std::vector<LogNotes>* notes_;
   InputErrors errors_;
   std::string name_;
   TomlNode tree_;
@@ -270,8 +298,9 @@ std::filesystem::path vehicle_of_bench(const std::filesystem::path& file) {
   return find_vehicle(file.parent_path(), vehicle->text);
 }
 
-BenchFit read_bench(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  return BenchReader(file, overrides).read();
+BenchFit read_bench(const std::filesystem::path& file, std::span<const std::string> overrides,
+                    std::vector<LogNotes>* notes) {
+  return BenchReader(file, overrides, notes).read();
 }
 
 }  // namespace wingbeat

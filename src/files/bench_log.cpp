@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 
 #include "files/bench_columns.hpp"
-#include "files/csv_cells.hpp"
+#include "files/bench_table.hpp"
+#include "files/read_number.hpp"
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/text.hpp"
 #include "wingbeat/files/bench_file.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -14,26 +16,12 @@
 
 namespace wingbeat {
 
-using detail::ColumnName, detail::metric_columns, detail::waveform_quantities;
+using detail::BenchTable, detail::ColumnName, detail::RecognisedColumn, detail::TableCell, detail::TableLine;
+using detail::metric_columns, detail::waveform_quantities;
 
 namespace {
 
-std::string base_name(std::string_view key) {
-  for (const std::string_view suffix : {"_rad_per_s", "_v", "_hz", "_a", "_w", "_n", "_rad", "_deg", "_degc", "_k"}) {
-    if (key.ends_with(suffix)) return std::string(key.substr(0, key.size() - suffix.size()));
-  }
-  return std::string(key);
-}
-
-/// SI value of a number in a column: value * factor.
-double column_factor(const std::string& unit, const std::string& expected) {
-  if (expected == "degC") {  // it has a zero of its own
-    if (unit == expected || unit == "degc") return 1.0;
-    throw UnitError("expected degC");
-  }
-  if (expected == "degree") return degrees_per_radian * unit_factor(unit, "rad");
-  return unit_factor(unit.empty() ? "1" : unit, expected);
-}
+constexpr const char* ignored = "ignore";
 
 class LogReader {
  public:
@@ -41,98 +29,130 @@ class LogReader {
     log_.waveform = request.given_value.has_value();
     if (log_.waveform) log_.given = *request.given;
     log_.file = file;
+    known_ = log_.waveform ? waveform_quantities() : metric_columns();
+    if (log_.waveform) known_.push_back({"crank_angle", "crank_angle", "rad", {}, true});
   }
 
   BenchLog read(std::string_view text) {
-    if (text.starts_with("\xEF\xBB\xBF")) text.remove_prefix(3);
-    bool header = true;
-    for (std::string_view line; next_line(text, line, line_);) {
-      if (is_blank_or_comment(line)) continue;
-      if (header) {
-        read_header(csv_cells(line));
-        header = false;
-      } else {
-        read_row(csv_cells(line));
-      }
-    }
-    if (header)
+    const BenchTable table = detail::read_bench_table(text, file_, {request_.separator, request_.decimal});
+    if (table.header.cells.empty())
       throw InputError(file_, 0, 0, "", "is empty; expected a header such as voltage_V,frequency_Hz,current_mean_mA");
-    if (log_.rows.empty()) throw InputError(file_, line_, 1, "", "holds no rows");
+    decimal_comma_ = table.decimal_comma;
+    read_header(table.header);
+    for (const TableLine& row : table.rows) read_row(row);
+    if (log_.rows.empty()) throw InputError(file_, table.header.number, 1, "", "holds no rows");
+    refuse_empty_columns();
+    const auto set_on_bench = [&](const BenchRow& row) { return log_.waveform ? row.crank_angle : row.given; };
+    notes_.sorted = std::is_sorted(log_.rows.begin(), log_.rows.end(), [&](const BenchRow& a, const BenchRow& b) {
+      return set_on_bench(a) < set_on_bench(b);
+    });
+    std::stable_sort(log_.rows.begin(), log_.rows.end(),
+                     [&](const BenchRow& a, const BenchRow& b) { return set_on_bench(a) < set_on_bench(b); });
+    notes_.encoding = table.encoding;
+    notes_.separator = table.separator;
+    notes_.decimal_comma = table.decimal_comma;
+    notes_.remarks = table.remarks;
     return log_;
+  }
+
+  LogNotes notes() {
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      const Column& column = columns_[c];
+      notes_.columns.push_back({column.header, column.name ? column.name->name : "", column.unit, column.factor,
+                                column.name ? column.name->unit : "", int(c) == set_, column.used, column.renamed,
+                                column.values, column.min, column.max});
+    }
+    return notes_;
   }
 
  private:
   struct Column {
-    const ColumnName* name = nullptr;  ///< null: what was set on the bench
+    const ColumnName* name = nullptr;  ///< null: not read
     double factor = 1.0;
-    bool used = true;
+    std::string unit;
+    bool used = true, renamed = false;
     std::string header;
+    int values = 0;
+    double min = HUGE_VAL, max = -HUGE_VAL;  ///< SI
   };
 
-  [[noreturn]] void refuse(int column, const std::string& key, const std::string& message) const {
-    throw InputError(file_, line_, column, key, message);
+  [[noreturn]] void refuse(int line, int column, const std::string& key, const std::string& message) const {
+    throw InputError(file_, line, column, key, message);
   }
 
-  Column column_of(const CsvCell& cell) {
-    const std::vector<ColumnName>& known = log_.waveform ? waveform_quantities() : metric_columns();
-    static const ColumnName crank_angle{"crank_angle", "crank_angle", "rad", {}, true};
-    const ColumnName* best = nullptr;
-    const auto offer = [&](const ColumnName& c) {
-      const bool prefix = cell.text.starts_with(c.name) &&
-                          (cell.text.size() == c.name.size() ||
-                           std::string_view("_ [(").find(cell.text[c.name.size()]) != std::string_view::npos);
-      if (prefix && (!best || c.name.size() > best->name.size())) best = &c;
-    };
-    for (const ColumnName& c : known) offer(c);
-    if (log_.waveform) offer(crank_angle);
-    if (!best) {
-      std::vector<std::string_view> names;
-      for (const ColumnName& c : known) names.push_back(c.name);
-      if (log_.waveform) names.push_back(crank_angle.name);
-      const std::string_view near = nearest_name(cell.text.substr(0, cell.text.find_first_of("[( ")), names);
-      refuse(cell.column, "",
-             fmt::format("unknown column {}; {}", in_quotes(cell.text),
-                         near.empty() ? fmt::format("known are {}", fmt::join(names, ", "))
-                                      : fmt::format("did you mean {} with its unit?", near)));
-    }
-    Column column{best, 1.0, true, best->name};
-    if (cell.text != best->full || best->full == best->name) {
-      std::string unit(cell.text.substr(best->name.size()));
-      std::replace(unit.begin(), unit.end(), '_', ' ');
-      unit = trimmed(unit);
-      const bool bracketed = unit.size() >= 2 && ((unit.front() == '[' && unit.back() == ']') ||
-                                                  (unit.front() == '(' && unit.back() == ')'));
-      if (bracketed) unit = trimmed(unit.substr(1, unit.size() - 2));
-      if (unit.empty() && best->unit != "1") {
-        refuse(cell.column, best->name,
-               fmt::format("names no unit; write {}_{} or {} [{}]", best->name,
-                           best->unit == "degree" ? "deg" : best->unit, best->name, best->unit));
+  Column column_of(const TableCell& cell, int line) {
+    RecognisedColumn found;
+    bool stated = false;
+    for (const auto& [header, name] : request_.columns) {
+      if (header != cell.text) continue;
+      if (name == ignored) return {nullptr, 1.0, "", false, false, cell.text};
+      stated = true;
+      // The unit stands in the name given, "lift_mean_mN", or in the header.
+      found = detail::recognise(name, known_);
+      const ColumnName* column = found.column ? found.column : detail::column_named(name, known_);
+      if (!column)
+        refuse(line, cell.column, "", fmt::format("columns names {}, which is no quantity", in_quotes(name)));
+      if (!found.column || !found.complaint.empty()) {
+        const std::size_t bracket = std::min(cell.text.find_first_of("[("), cell.text.size());
+        found = detail::recognise(column->name + cell.text.substr(bracket), known_);
       }
-      try {
-        column.factor = column_factor(unit, best->unit);
-      } catch (const UnitError& error) {
-        refuse(cell.column, best->name, fmt::format("the unit {} is wrong: {}", in_quotes(unit), error.what()));
-      }
+      found.renamed = true;
     }
-    return column;
+    if (!stated) found = detail::recognise(cell.text, known_);
+    const auto& wanted = request_.measured;
+    if (!found.column) {
+      if (!wanted.empty()) return {nullptr, 1.0, "", false, false, cell.text};  // the others are named
+      refuse_unknown(cell, line);
+    }
+    if (!found.complaint.empty()) refuse(line, cell.column, found.column->name, found.complaint);
+    return {found.column, found.factor, found.unit, true, found.renamed, cell.text};
   }
 
-  void read_header(const std::vector<CsvCell>& cells) {
-    for (const CsvCell& cell : cells) {
-      Column column = column_of(cell);
+  [[noreturn]] void refuse_unknown(const TableCell& cell, int line) const {
+    std::vector<std::string_view> names;
+    for (const ColumnName& c : known_) names.push_back(c.name);
+    const std::string_view near = nearest_name(
+        std::string_view(cell.text).substr(0, std::min(cell.text.find_first_of("[( "), cell.text.size())), names);
+    refuse(line, cell.column, "",
+           fmt::format("unknown column {}; {}; columns = {{ {} = \"ignore\" }} in [[log]] leaves it out",
+                       in_quotes(cell.text),
+                       near.empty() ? fmt::format("known are {}", fmt::join(names, ", "))
+                                    : fmt::format("did you mean {} with its unit?", near),
+                       in_quotes(cell.text)));
+  }
+
+  void read_header(const TableLine& header) {
+    for (const auto& [name, meaning] : request_.columns) {
+      const auto there = [&, n = name](const TableCell& cell) { return cell.text == n; };
+      if (std::none_of(header.cells.begin(), header.cells.end(), there)) {
+        refuse(header.number, 1, "",
+               fmt::format("[[log]] columns names {}, which the header has not", in_quotes(name)));
+      }
+    }
+    for (const TableCell& cell : header.cells) {
+      Column column = column_of(cell, header.number);
       for (const Column& before : columns_) {
-        if (before.header == column.header) refuse(cell.column, column.header, "is given twice");
+        if (!column.name || before.name != column.name) continue;
+        refuse(
+            header.number, cell.column, column.name->name,
+            before.header == column.header
+                ? "is given twice"
+                : fmt::format("is given twice, as {} and as {}; columns = {{ {} = \"ignore\" }} in [[log]] leaves one "
+                              "out",
+                              in_quotes(before.header), in_quotes(column.header), in_quotes(column.header)));
       }
       columns_.push_back(column);
     }
     const auto index_of = [&](std::string_view name) {
-      const auto found =
-          std::find_if(columns_.begin(), columns_.end(), [&](const Column& c) { return c.header == name; });
+      const auto found = std::find_if(columns_.begin(), columns_.end(),
+                                      [&](const Column& c) { return c.name && c.name->name == name; });
       return found == columns_.end() ? -1 : int(found - columns_.begin());
     };
     if (log_.waveform) {
       set_ = index_of("crank_angle");
-      if (set_ < 0) refuse(1, "crank_angle", "missing column: a waveform needs crank_angle_rad or crank_angle_deg");
+      if (set_ < 0) {
+        refuse(header.number, 1, "crank_angle", "missing column: a waveform needs crank_angle_rad or crank_angle_deg");
+      }
     } else {
       const int voltage = index_of("voltage"), frequency = index_of("frequency");
       if (!request_.given && voltage >= 0 && frequency >= 0) {
@@ -145,111 +165,113 @@ class LogReader {
       }
       set_ = log_.given == Given::voltage ? voltage : frequency;
       if (set_ < 0) {
-        refuse(1, log_.given == Given::voltage ? "voltage" : "frequency",
+        refuse(header.number, 1, log_.given == Given::voltage ? "voltage" : "frequency",
                "missing column: a log needs the voltage or the frequency that was set");
       }
     }
     for (const std::string& wanted : request_.measured) {
-      if (index_of(base_name(wanted)) < 0) refuse(1, wanted, "missing column: [[log]] names it as measured");
+      const ColumnName* column = detail::column_named(wanted, known_);
+      if (!column || index_of(column->name) < 0) {
+        refuse(header.number, 1, wanted, "missing column: [[log]] names it as measured");
+      }
     }
     for (std::size_t c = 0; c < columns_.size(); ++c) {
-      if (int(c) == set_) continue;
+      if (int(c) == set_ || !columns_[c].name) continue;
       const auto& wanted = request_.measured;
       columns_[c].used = wanted.empty() || std::any_of(wanted.begin(), wanted.end(), [&](const std::string& w) {
-                           return base_name(w) == columns_[c].header;
+                           return detail::column_named(w, known_) == columns_[c].name;
                          });
       if (columns_[c].used) log_.columns.push_back(columns_[c].name->quantity);
     }
-    if (log_.columns.empty()) refuse(1, "", "no measured column beside what was set");
+    if (log_.columns.empty()) refuse(header.number, 1, "", "no measured column beside what was set");
   }
 
-  void read_row(const std::vector<CsvCell>& cells) {
-    if (cells.size() != columns_.size()) {
-      refuse(1, "", fmt::format("expected {} values, got {}", columns_.size(), cells.size()));
+  /// NaN for a cell without a value.
+  double number_in(const TableCell& cell, int line, const Column& column) const {
+    if (detail::is_missing(cell.text)) return absent;
+    std::string text = cell.text;
+    if (decimal_comma_) std::replace(text.begin(), text.end(), ',', '.');
+    const char* const end = text.data() + text.size();
+    double number = 0.0;
+    const auto [last, error] = detail::read_number(text.data() + (text.starts_with('+') ? 1 : 0), end, number);
+    if (error != std::errc{} || last != end || !std::isfinite(number)) {
+      refuse(line, cell.column, column.name->name, fmt::format("expected a number, got {}", in_quotes(cell.text)));
     }
+    return column.factor * number;
+  }
+
+  void read_row(const TableLine& line) {
     BenchRow row;
-    row.line = line_;
-    for (std::size_t c = 0; c < cells.size(); ++c) {
-      const Column& column = columns_[c];
-      const std::string text(cells[c].text);
-      char* end = nullptr;
-      const double number = std::strtod(text.c_str(), &end);
-      if (text.empty() || *end != '\0' || !std::isfinite(number)) {
-        refuse(cells[c].column, column.header, fmt::format("expected a number, got {}", in_quotes(text)));
-      }
-      const double x = column.factor * number;
+    row.line = line.number;
+    bool has_place = true;
+    int missing = 0;
+    for (std::size_t c = 0; c < line.cells.size(); ++c) {
+      Column& column = columns_[c];
+      const TableCell& cell = line.cells[c];
+      if (!column.name) continue;
+      const double x = number_in(cell, line.number, column);
       if (int(c) == set_) {
-        if (log_.waveform) {
-          row.given = *request_.given_value;
-          row.crank_angle = x;
-          if (!(x >= 0.0 && x <= two_pi * (1.0 + 1e-12))) {
-            refuse(cells[c].column, column.header, fmt::format("must lie between 0 and 360 deg, got {}", text));
-          }
-        } else {
-          row.given = x;
-          if (!(x > 0.0)) refuse(cells[c].column, column.header, fmt::format("must be > 0, got {}", text));
-        }
+        has_place = !std::isnan(x);
+        check_place(x, cell, line.number, column);
+        if (log_.waveform) row.given = *request_.given_value;
+        (log_.waveform ? row.crank_angle : row.given) = x;
       } else {
         if (x < 0.0 && !column.name->may_be_negative) {
-          refuse(cells[c].column, column.header, fmt::format("must not be negative, got {}", text));
+          refuse(line.number, cell.column, column.name->name, fmt::format("must not be negative, got {}", cell.text));
         }
-        if (column.used) row.values.push_back(x);
+        if (!column.used) continue;
+        row.values.push_back(x);
+        missing += std::isnan(x);
       }
+      if (std::isnan(x)) continue;
+      ++column.values;
+      column.min = std::min(column.min, x);
+      column.max = std::max(column.max, x);
     }
-    if (!log_.rows.empty()) {
-      const BenchRow& before = log_.rows.back();
-      const double last = log_.waveform ? before.crank_angle : before.given;
-      const double now = log_.waveform ? row.crank_angle : row.given;
-      const std::string& name = columns_[std::size_t(set_)].header;
-      if (now == last) refuse(1, name, fmt::format("the same value as in line {}: a row stands twice", before.line));
-      if (now < last) {
-        refuse(1, name, fmt::format("rows must be sorted: smaller than in line {}", before.line));
-      }
+    if (!has_place || missing == int(row.values.size())) {
+      log_.rows_left_out.push_back(line.number);
+      return;
     }
+    log_.values_left_out += missing;
     log_.rows.push_back(row);
+  }
+
+  void check_place(double x, const TableCell& cell, int line, const Column& column) const {
+    if (std::isnan(x)) return;
+    if (log_.waveform && !(x >= 0.0 && x <= two_pi * (1.0 + 1e-12))) {
+      refuse(line, cell.column, column.name->name, fmt::format("must lie between 0 and 360 deg, got {}", cell.text));
+    }
+    if (!log_.waveform && !(x > 0.0)) {
+      refuse(line, cell.column, column.name->name, fmt::format("must be > 0, got {}", cell.text));
+    }
+  }
+
+  void refuse_empty_columns() const {
+    for (const Column& column : columns_) {
+      if (column.name && column.used && column.values == 0) {
+        throw InputError(file_, 0, 0, column.name->name,
+                         fmt::format("the column {} holds no numbers", in_quotes(column.header)));
+      }
+    }
   }
 
   std::string file_;
   const LogRequest& request_;
   BenchLog log_;
+  LogNotes notes_;
+  std::vector<ColumnName> known_;
   std::vector<Column> columns_;
-  int line_ = 0;
+  bool decimal_comma_ = false;
   int set_ = -1;
 };
 
 }  // namespace
 
-const std::vector<ColumnName>& detail::metric_columns() {
-  static const std::vector<ColumnName> columns = [] {
-    std::vector<ColumnName> all;
-    for (int m = 0; m < metric_count; ++m) {
-      const MetricInfo& info = metric_info(Metric(m));
-      const Metric metric = Metric(m);
-      const bool negative = metric == Metric::lift_mean || metric == Metric::lift_peak ||
-                            metric == Metric::power_residual || metric == Metric::angle_of_attack_min ||
-                            metric == Metric::power_aerodynamic || metric == Metric::lift_to_weight ||
-                            lacking_of_heat(metric, {}) != nullptr;
-      all.push_back({base_name(info.key), info.key, info.unit, {false, metric, {}}, negative});
-    }
-    return all;
-  }();
-  return columns;
-}
-
-const std::vector<ColumnName>& detail::waveform_quantities() {
-  static const std::vector<ColumnName> columns = [] {
-    std::vector<ColumnName> all;
-    for (int q = 0; q < waveform_quantity_count; ++q) {
-      const auto quantity = WaveformQuantity(q);
-      all.push_back({name_of(quantity), name_of(quantity), unit_of(quantity), {true, {}, quantity}, true});
-    }
-    return all;
-  }();
-  return columns;
-}
-
-BenchLog parse_log(std::string_view text, const std::string& file_name, const LogRequest& request) {
-  return LogReader(file_name, request).read(text);
+BenchLog parse_log(std::string_view text, const std::string& file_name, const LogRequest& request, LogNotes* notes) {
+  LogReader reader(file_name, request);
+  BenchLog log = reader.read(text);
+  if (notes) *notes = reader.notes();
+  return log;
 }
 
 }  // namespace wingbeat

@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 
 #include "files/design_write.hpp"
 #include "report/fit_rows.hpp"
+#include "wingbeat/core/math.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/report/bench_report.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/plot_panels.hpp"
 #include "wingbeat/report/report.hpp"
@@ -165,6 +168,29 @@ std::string describe(Undetermined why) {
   return "";
 }
 
+std::string outlier_advice(const BenchFit& fit, const FitResult& r) {
+  constexpr double far = 4.0;    // standard deviations
+  constexpr double alone = 3.0;  // times the rms of all others
+  if (fit.loss != Loss::none) return "";
+  const FitPoint* farthest = nullptr;
+  double squares = 0.0;
+  int values = 0;
+  for (const FitPoint& p : r.points) {
+    if (!std::isfinite(p.fitted)) continue;
+    squares += square(p.residual());
+    ++values;
+    if (!farthest || std::abs(p.residual()) > std::abs(farthest->residual())) farthest = &p;
+  }
+  if (!farthest || values < 3) return "";
+  const double off = std::abs(farthest->residual()), others = std::sqrt((squares - off * off) / (values - 1));
+  if (!(off > far && off > alone * others)) return "";
+  return fmt::format(
+      "{} of {} lies {:.1f} standard deviations from the fit, {:.0f} times the rms of all other values. If "
+      "it is an outlier, loss = \"huber\" in [fit] keeps it from deciding.",
+      name_of(fit.logs[farthest->log].columns[farthest->column]), row_name(fit, farthest->log, farthest->row), off,
+      off / others);
+}
+
 std::string text_fit(const BenchFit& fit, const FitResult& r) {
   std::string text;
   int rows = 0;
@@ -184,6 +210,12 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
                       counted(std::size_t(rows), "row"), counted(r.points.size(), "measured value"),
                       counted(fit.logs.size(), "log"),
                       r.converged ? !r.misfit ? "converged" : "the search converged" : "NOT converged: " + r.message);
+  for (const BenchLog& log : fit.logs) {
+    if (const std::string missing = left_out(log); !missing.empty()) {
+      text +=
+          wrapped(fmt::format("{}: {}", std::filesystem::path(log.file).filename().string(), missing), 88, 2) + "\n";
+    }
+  }
   if (fit.starts > 1) {
     text += fmt::format("{} of {} starts end in this least, {} in a higher one\n", r.starts_converged, fit.starts,
                         r.starts_elsewhere);
@@ -252,6 +284,7 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
     }
     if (outliers.size() > 10) text += fmt::format("  and {} more\n", outliers.size() - 10);
   }
+  if (const std::string advice = outlier_advice(fit, r); !advice.empty()) text += wrapped(advice, 88, 0) + "\n";
   return text;
 }
 

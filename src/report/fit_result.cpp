@@ -174,6 +174,11 @@ const Description<FitFound>& fit_description() {
   static const Description<R> description =
       Description<R>()
           .all_of(fit_result_description(), [](const R& r) -> const FitResult& { return r.result; })
+          .always("advice", "", "about a lone outlier; null where there is none",
+                  [](const R& r) {
+                    const std::string advice = outlier_advice(r.fit, r.result);
+                    return advice.empty() ? std::nullopt : std::optional(advice);
+                  })
           .parts("unreached", "rows that the fitted model does not reach", unreached_description(),
                  [](const R& r) { return of_logs(r.fit, r.result.unreached); })
           .parts("points", "measured values beside those of the fitted model", point_description(),

@@ -48,12 +48,6 @@ std::string unit_shown(std::string_view unit) {
   return unit.empty() ? "text" : unit == "1" ? "number" : std::string(unit);
 }
 
-std::string choices_of(std::string_view only_with) {
-  std::string text(only_with);
-  for (auto bar = text.find('|'); bar != std::string::npos; bar = text.find('|', bar)) text.replace(bar, 1, " or ");
-  return text;
-}
-
 /// What a new vehicle states, by key. All else it may state is offered as a comment.
 using Statement = std::pair<std::string_view, std::string_view>;
 
@@ -207,7 +201,7 @@ std::string text_keys(const std::string& filter) {
     text += fmt::format("{}  [{}]  {}; default: {}\n", key->path, unit_shown(key->unit), key->range.text,
                         default_text(*key));
     std::string meaning(key->meaning);
-    if (!key->only_with.empty()) meaning += fmt::format(" (only with {})", choices_of(key->only_with));
+    if (!key->only_with.empty()) meaning += fmt::format(" (only with {})", with_or(key->only_with));
     text += fmt::format("    {}\n", wrapped(meaning, 92, 4));
   }
   return text;
@@ -232,7 +226,7 @@ const Description<ParameterText>& key_description() {
           .always("default", "", "", [](const R& r) { return default_text(r); })
           .always("meaning", "", "", &R::meaning)
           .always("only_with", "", "what the vehicle file must state beside it",
-                  [](const R& r) { return text_if_any(choices_of(r.only_with)); });
+                  [](const R& r) { return text_if_any(with_or(r.only_with)); });
   return description;
 }
 
@@ -291,7 +285,7 @@ std::string vehicle_file_reference() {
       result += "| --- | --- | --- | --- | --- |\n";
     }
     std::string meaning(key.meaning);
-    if (!key.only_with.empty()) meaning += " (only with `" + choices_of(key.only_with) + "`)";
+    if (!key.only_with.empty()) meaning += " (only with `" + with_or(key.only_with) + "`)";
     const std::string_view unit = key.unit.empty() ? "text" : key.unit == "1" ? "-" : key.unit;
     result += fmt::format("| `{}` | {} | {} | {} | {} |\n", key.path, unit, key.range.text, default_text(key), meaning);
   }

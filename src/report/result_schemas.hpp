@@ -11,9 +11,11 @@ nlohmann::ordered_json tolerance_schema();
 nlohmann::ordered_json optimum_schema();
 nlohmann::ordered_json motors_schema();  ///< an optimum for each motor of a catalogue, or for each choice
 nlohmann::ordered_json front_schema();
+nlohmann::ordered_json readings_schema();
 nlohmann::ordered_json fit_schema();
 nlohmann::ordered_json identification_schema();
 nlohmann::ordered_json control_schema();
+nlohmann::ordered_json scaling_schema();
 nlohmann::ordered_json keys_schema();
 nlohmann::ordered_json metrics_schema();
 

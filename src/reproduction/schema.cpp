@@ -23,17 +23,19 @@ Json optimise_schema() {
        schema::with_text(described::front_schema(), "several objectives")});
 }
 
-constexpr std::array<std::pair<std::string_view, Json (*)()>, 12> schemas = {
+constexpr std::array<std::pair<std::string_view, Json (*)()>, 14> schemas = {
     {{"run", described::run_schema},
      {"compare", described::comparison_schema},
      {"sweep", described::sweep_schema},
      {"identify-motor", described::identification_schema},
+     {"read-bench", described::readings_schema},
      {"fit", described::fit_schema},
      {"tolerance", described::tolerance_schema},
      {"optimise", optimise_schema},
      {"endurance", described::endurance_schema},
      {"linearise", described::control_schema},
      {"reproduce", described::claims_schema},
+     {"scale", described::scaling_schema},
      {"keys", described::keys_schema},
      {"metrics", described::metrics_schema}}};
 

@@ -47,6 +47,7 @@ BenchModel::BenchModel(const BenchFit& fit, const ForEach& for_each) : fit_(fit)
       OperatingPoint& point = points_.back();
       if (log.waveform) point.crank_angles.push_back(row.crank_angle);
       for (std::size_t c = 0; c < log.columns.size(); ++c) {
+        if (std::isnan(row.values[c])) continue;
         point.observations.push_back(observations_.size());
         point.peaks = point.peaks || (!log.columns[c].waveform && is_peak(log.columns[c].metric, drive_of(fit.design)));
         observations_.push_back({l, r, c, log.columns[c], points_.size() - 1,

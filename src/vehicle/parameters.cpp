@@ -61,9 +61,14 @@ std::string default_text(const ParameterText& parameter) {
   if (const std::string_view other = parameter.required_unless; is_section(other)) {
     text += " unless " + std::string(leaf_of(other)) + " is a name";
   } else if (!other.empty()) {
-    text += " unless ";
-    for (const char c : other) text += c == '|' ? std::string(" or ") : std::string(1, c);
+    text += " unless " + with_or(other);
   }
+  return text;
+}
+
+std::string with_or(std::string_view alternatives) {
+  std::string text;
+  for (const char c : alternatives) text += c == '|' ? std::string(" or ") : std::string(1, c);
   return text;
 }
 

@@ -47,9 +47,9 @@ class CommandLine : public Program {
   }
 };
 
-const std::vector<std::string> commands = {"run",       "compare",  "sweep",     "identify-motor", "fit",
-                                           "tolerance", "optimise", "endurance", "reproduce",      "new",
-                                           "keys",      "metrics",  "schema"};
+const std::vector<std::string> commands = {"run", "compare",   "sweep",    "identify-motor", "read-bench",
+                                           "fit", "tolerance", "optimise", "endurance",      "reproduce",
+                                           "new", "scale",     "keys",     "metrics",        "schema"};
 
 TEST_F(CommandLine, EveryHelpExampleWorksAsTyped) {
   for (const std::string& command : commands) {

@@ -7,6 +7,7 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+using testing::Not;
 using testing::UnorderedElementsAre;
 
 class Fit : public Program {};
@@ -28,6 +29,52 @@ TEST_F(Fit, WritesAVehicleThatRunsAndItsCovariance) {
   EXPECT_EQ(run({"run", path("fitted.toml")}).status, 0);
   EXPECT_THAT(read(path("fitted.covariance.toml")), HasSubstr("vehicle = \"fitted.toml\""));
   EXPECT_THAT(read(path("residuals.svg")), HasSubstr("wingless"));
+}
+
+TEST_F(Fit, ReadBenchShowsWhatWasUnderstood) {
+  const Outcome o = run({"read-bench", data + "/bench/spreadsheet.csv"});
+  EXPECT_EQ(o.status, 0) << o.err;
+  for (const char* part :
+       {"cells between semicolons, decimal comma, 1 line of remarks", "3 rows, sorted by the voltage",
+        "left out: 1 cell without a value", "U [V]", "lift_mean", "8.630 mN to 22.06 mN", "set"}) {
+    EXPECT_THAT(o.out, HasSubstr(part)) << o.out;
+  }
+  const Json json = run({"read-bench", bench, "--json"}).json();
+  ASSERT_EQ(json["logs"].size(), 3U);
+  EXPECT_EQ(json["logs"][0]["columns"][0]["role"], "set");
+  std::ofstream(path("open.csv")) << "voltage_V;current_mA\n2;1,204\n3;1,305\n";
+  const Outcome open = run({"read-bench", path("open.csv")});
+  EXPECT_EQ(open.status, 2);
+  EXPECT_THAT(open.err, HasSubstr("open.csv:2:3: is \"1,204\" a decimal fraction or a number of thousands?"));
+}
+
+// Logs with gaps and one wrong value: what is left out is counted, what is alone far off is named.
+TEST_F(Fit, GapsAreCountedAndALoneOutlierNamed) {
+  for (const char* name : {"vacuum.csv", "wingless.csv"}) fs::copy_file(data + "/bench/" + name, path(name));
+  std::string toml = read(bench);
+  const std::string vehicle = "../designs/";
+  toml.replace(toml.find(vehicle), vehicle.size(), data + "/designs/");
+  std::ofstream(path("bench.toml")) << toml;
+  std::istringstream lines(read(data + "/bench/air.csv"));
+  std::ofstream air(path("air.csv"));
+  int row = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (line.starts_with("#") || line.starts_with("voltage")) {
+      air << line << "\n";
+      continue;
+    }
+    ++row;
+    const std::size_t last = line.rfind(',');
+    if (row == 2) line = line.substr(0, last + 1);  // the last cell is empty
+    if (row == 5) line = line.substr(0, last + 1) + std::to_string(1.3 * std::stod(line.substr(last + 1)));
+    air << line << "\n";
+  }
+  air.close();
+  const Outcome o = run({"fit", path("bench.toml"), "--no-profiles"});
+  EXPECT_THAT(o.out, HasSubstr("107 measured values in 3 logs"));
+  EXPECT_THAT(o.out, HasSubstr("air.csv: left out: 1 cell without a value"));
+  EXPECT_THAT(o.out, HasSubstr("loss = \"huber\" in [fit]"));
+  EXPECT_THAT(run({"fit", bench, "--no-profiles"}).out, Not(HasSubstr("huber")));
 }
 
 TEST_F(Fit, JsonHoldsTheTruthInItsIntervals) {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 
@@ -83,18 +84,136 @@ TEST(BenchLog, RefusalsNameFileLineAndReason) {
             "air.csv:1:1: frequency: missing column: a log needs the voltage or the frequency that was set");
   EXPECT_EQ(log_error("voltage_V,frequency_Hz,frequency_Hz\n3,22,22\n"), "air.csv:1:24: frequency: is given twice");
   EXPECT_EQ(log_error("voltage_V\n3\n"), "air.csv:1:1: no measured column beside what was set");
-  EXPECT_EQ(log_error("voltage_V,frequency_Hz\n3,22\n2,15\n"),
-            "air.csv:3:1: voltage: rows must be sorted: smaller than in line 2");
-  EXPECT_EQ(log_error("voltage_V,frequency_Hz\n3,22\n3,22.1\n"),
-            "air.csv:3:1: voltage: the same value as in line 2: a row stands twice");
   EXPECT_EQ(log_error("voltage_V,current_mean_mA\n2,120\n3,-180\n"),
             "air.csv:3:3: current_mean: must not be negative, got -180");
   EXPECT_EQ(log_error("voltage_V,frequency_Hz\n-3,22\n"), "air.csv:2:1: voltage: must be > 0, got -3");
-  EXPECT_EQ(log_error("voltage_V,frequency_Hz\n3,\n"), "air.csv:2:3: frequency: expected a number, got \"\"");
-  EXPECT_EQ(log_error("voltage_V,frequency_Hz\n3,nan\n"), "air.csv:2:3: frequency: expected a number, got \"nan\"");
+  EXPECT_EQ(log_error("voltage_V,frequency_Hz\n3,fast\n"), "air.csv:2:3: frequency: expected a number, got \"fast\"");
+  EXPECT_EQ(log_error("voltage_V,frequency_Hz\n3,1e999\n"), "air.csv:2:3: frequency: expected a number, got \"1e999\"");
+  EXPECT_EQ(log_error("voltage_V,frequency_Hz,lift_mean_mN\n3,22,\n4,30,nan\n"),
+            "air.csv: lift_mean: the column \"lift_mean_mN\" holds no numbers");
   EXPECT_EQ(log_error("voltage_V,frequency_Hz\n3\n"), "air.csv:2:1: expected 2 values, got 1");
   EXPECT_EQ(log_error("voltage_V,frequency_Hz\n"), "air.csv:1:1: holds no rows");
   EXPECT_THAT(log_error(""), HasSubstr("air.csv: is empty"));
+}
+
+// A file as benches, spreadsheets and loggers write it, and the same file as the program would.
+class MessyLog : public testing::Test {
+ protected:
+  void expect_same(const std::string& text, const LogRequest& request = {}) {
+    BenchLog log;
+    notes = {};
+    ASSERT_NO_THROW(log = parse_log(text, "messy.csv", request, &notes)) << log_error(text, request);
+    ASSERT_EQ(log.columns, plain.columns);
+    ASSERT_EQ(log.rows.size(), plain.rows.size());
+    for (std::size_t r = 0; r < log.rows.size(); ++r) {
+      EXPECT_NEAR(log.rows[r].given, plain.rows[r].given, 1e-12);
+      for (std::size_t c = 0; c < log.columns.size(); ++c) {
+        EXPECT_NEAR(log.rows[r].values[c], plain.rows[r].values[c], 1e-12 * plain.rows[r].values[c]);
+      }
+    }
+  }
+  const BenchLog plain = parse_log(
+      "voltage_V,frequency_Hz,current_mean_mA,lift_mean_mN\n2,15.25,120.5,4.903325\n3,22,180,9.80665\n", "p.csv", {});
+  LogNotes notes;
+};
+
+TEST_F(MessyLog, Separators) {
+  expect_same("voltage_V;frequency_Hz;current_mean_mA;lift_mean_mN\n2;15.25;120.5;4.903325\n3;22;180;9.80665\n");
+  EXPECT_EQ(notes.separator, ';');
+  expect_same("voltage_V\tfrequency_Hz\tcurrent_mean_mA\tlift_mean_mN\n2\t15.25\t120.5\t4.903325\n3\t22\t180\t9.80665");
+  EXPECT_EQ(notes.separator, '\t');
+  expect_same("sep=;\nvoltage_V;frequency_Hz;current_mean_mA;lift_mean_mN\n2;15.25;120.5;4.903325\n3;22;180;9.80665\n");
+  expect_same(
+      "\"voltage_V\",\"frequency_Hz\",\"current_mean_mA\",\"lift_mean_mN\"\n\"2\",\"15.25\",\"120.5\",\"4.903325\"\n"
+      "\"3\",22,180,9.80665\n");
+}
+
+TEST_F(MessyLog, DecimalComma) {
+  expect_same("voltage_V;frequency_Hz;current_mean_mA;lift_mean_mN\n2,0;15,25;120,5;4,903325\n3;22;180;9,80665\n");
+  EXPECT_TRUE(notes.decimal_comma);
+  expect_same(
+      "voltage_V,frequency_Hz,current_mean_mA,lift_mean_mN\n2,\"15,25\",\"120,5\",\"4,903325\"\n3,22,180,\"9,80665\"\n");
+  EXPECT_TRUE(notes.decimal_comma);
+  EXPECT_THAT(log_error("voltage_V,frequency_Hz\n2,0,15,25\n3,0,22,0\n"),
+              HasSubstr("decimal commas between commas are ambiguous"));
+}
+
+TEST_F(MessyLog, AGuessThatMayBeWrongIsAQuestion) {
+  const std::string open = "voltage_V;current_mean_mA\n2;1,204\n3;1,801\n";
+  EXPECT_EQ(log_error(open),
+            "air.csv:2:3: is \"1,204\" a decimal fraction or a number of thousands? Say decimal = \",\" or \".\" in "
+            "[[log]]");
+  LogRequest request;
+  request.decimal = ',';
+  EXPECT_NEAR(parse_log(open, "a.csv", request).rows[0].values[0], 1.204e-3, 1e-15);
+  request.decimal = '.';
+  EXPECT_THAT(log_error(open, request), HasSubstr("expected a number, got \"1,204\""));
+  EXPECT_THAT(log_error("voltage_V;current_mean_mA\n2.5;1,2\n"), HasSubstr("which is the decimal sign?"));
+  const std::string either = "voltage_V;lift_mean_mN,current_mean_mA\n2;3,4\n";
+  EXPECT_THAT(log_error(either), HasSubstr("are the cells separated by a comma or by a semicolon?"));
+  EXPECT_THAT(log_error("voltage_V,current_mean_A,I (A)\n3,0.18,0.19\n"),
+              HasSubstr("current_mean: is given twice, as \"current_mean_A\" and as \"I (A)\"; columns = { \"I (A)\" = "
+                        "\"ignore\" }"));
+  EXPECT_THAT(log_error("voltage_V,force_N\n3,0.18\n"), HasSubstr("unknown column \"force_N\""));
+  EXPECT_THAT(log_error("voltage_V,F (N)\n3,0.18\n"), HasSubstr("unknown column \"F (N)\""));
+}
+
+TEST_F(MessyLog, NamesAndUnitsInUse) {
+  expect_same("Voltage (V),Frequency [Hz],current_mA,Lift (g)\n2,15.25,120.5,0.5\n3,22,180,1\n");
+  EXPECT_TRUE(notes.columns[2].renamed);
+  EXPECT_EQ(notes.columns[3].name, "lift_mean");
+  expect_same("U [mV];f [rpm];I / A;Thrust_gf\n2000;915;0.1205;0.5\n3000;1320;0.18;1\n");
+  expect_same(
+      "Supply Voltage [V],Flapping frequency (1/min),Mean current (mA),mean lift [mgf]\n2,915,120.5,500\n3,1320,180,1000\n");
+  expect_same(
+      "voltage_V,freq_Hz,Average current (\xC2\xB5"
+      "A),lift_kgf\n2,15.25,120500,0.0005\n3,22,180000,0.001\n");
+  LogRequest request;
+  request.columns = {{"Kraft links (mN)", "lift_mean"}, {"Bemerkung", "ignore"}};
+  expect_same(
+      "voltage_V,frequency_Hz,current_mA,Kraft links (mN),Bemerkung\n2,15.25,120.5,4.903325,ok\n3,22,180,9.80665,warm\n",
+      request);
+  EXPECT_EQ(notes.columns[4].name, "");
+  request.columns = {{"Kraft", "lift_mean_mN"}};
+  expect_same("voltage_V,frequency_Hz,current_mA,Kraft\n2,15.25,120.5,4.903325\n3,22,180,9.80665\n", request);
+  request.columns = {{"Schub", "lift_mean"}};
+  EXPECT_THAT(log_error("voltage_V,lift_mN\n2,3\n", request),
+              HasSubstr("columns names \"Schub\", which the header has not"));
+}
+
+TEST_F(MessyLog, OrderRepeatsAndGaps) {
+  expect_same("voltage_V,frequency_Hz,current_mean_mA,lift_mean_mN\n3,22,180,9.80665\n2,15.25,120.5,4.903325\n");
+  EXPECT_FALSE(notes.sorted);
+  const BenchLog log = parse_log(
+      "voltage_V,frequency_Hz,lift_mean_mN\n3,22,8\n2,15,\n3,22.1,NaN\n,30,9\n4,,n/a\n,,\n1,8,1\n", "air.csv", {});
+  ASSERT_EQ(log.rows.size(), 4U);
+  const int lines[] = {8, 3, 2, 4};
+  for (std::size_t n = 0; n < 4; ++n) EXPECT_EQ(log.rows[n].line, lines[n]);
+  EXPECT_EQ(log.values_left_out, 2);
+  EXPECT_EQ(log.rows_left_out, (std::vector<int>{5, 6}));
+  EXPECT_TRUE(std::isnan(log.rows[1].values[1]));
+}
+
+TEST_F(MessyLog, EncodingsRemarksAndLineEnds) {
+  const std::string text =
+      "% made by a logger\r\n// second line\r\nvoltage_V,frequency_Hz,current_mean_mA,lift_mean_mN\r\n2,15.25,120.5,4.903325\r\n"
+      "\r\n# half way\r\n3,22,180,9.80665\r\n";
+  expect_same("\xEF\xBB\xBF" + text);
+  EXPECT_EQ(notes.remarks, 3);
+  std::string old = text;
+  old.erase(std::remove(old.begin(), old.end(), '\n'), old.end());
+  expect_same(old);
+  std::string wide = "\xFF\xFE";
+  for (const char c : text) wide += {c, '\0'};
+  expect_same(wide);
+  EXPECT_EQ(notes.encoding, "UTF-16LE");
+  expect_same(
+      "voltage_V,frequency_Hz,current (\xB5"
+      "A),lift_mean_mN\n2,15.25,120500,4.903325\n3,22,180000,9.80665\n");
+  EXPECT_EQ(notes.encoding, "WINDOWS-1252");
+  EXPECT_THAT(log_error(std::string("\xFF\xFE"
+                                    "a")),
+              HasSubstr("is marked as UTF-16LE and is not"));
 }
 
 class BenchFile : public testing::Test {
@@ -144,6 +263,24 @@ TEST_F(BenchFile, ReadsAFit) {
   EXPECT_EQ(fit.logs[0].condition, Condition::air);
   EXPECT_EQ(fit.deviations.at({false, Metric::frequency, {}}).value, 0.1);
   EXPECT_EQ(fit.deviations.at({false, Metric::lift_mean, {}}).kind, Deviation::Kind::estimated);
+}
+
+TEST_F(BenchFile, SaysHowAFileIsWritten) {
+  write("air.csv", "Spannung;Frequenz;Auftrieb (mN);Notiz\n2,5;14,004;1,204;x\n3,1;22,001;8,735;\n");
+  write("bench.toml", head + parameter + deviation + log +
+                          "separator = \";\"\ndecimal = \",\"\ncolumns = { Spannung = \"voltage_V\", Frequenz = "
+                          "\"frequency_Hz\", \"Auftrieb (mN)\" = \"lift_mean\", Notiz = \"ignore\" }\n");
+  std::vector<LogNotes> notes;
+  const BenchFit fit = read_bench(folder_ / "bench.toml", {}, &notes);
+  EXPECT_NEAR(fit.logs[0].rows[0].values[1], 1.204e-3, 1e-15);
+  ASSERT_EQ(notes.size(), 1U);
+  EXPECT_EQ(notes[0].columns[1].name, "frequency");
+  EXPECT_THAT(error_of(head + parameter + deviation + log + "separator = \"|\"\n"),
+              HasSubstr("log[1].separator: must be \",\", \";\" or \"\\t\", got \"|\""));
+  EXPECT_THAT(error_of(head + parameter + deviation + log +
+                       "columns = { Spannung = \"voltage_V\", Frequenz = \"frequency_Hz\", "
+                       "\"Auftrieb (mN)\" = \"lift_mean\", Notiz = \"remarks\" }\n"),
+              HasSubstr("columns names \"remarks\", which is no quantity"));
 }
 
 TEST_F(BenchFile, RefusalsNamePlaceAndReason) {

@@ -140,7 +140,7 @@ class Completions:
 
     def test_commands(self):
         self.assertEqual(self.complete("wingbeat "), sorted(COMMANDS))
-        self.assertEqual(self.complete("wingbeat re"), ["reproduce"])
+        self.assertEqual(self.complete("wingbeat re"), ["read-bench", "reproduce"])
         self.assertEqual([name for name in self.complete("wingbeat --") if name.startswith("--")],
                          ["--help", "--version"])
 

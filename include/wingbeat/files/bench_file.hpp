@@ -5,27 +5,57 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "wingbeat/study/bench_fit.hpp"
 
 namespace wingbeat {
 
+/// What a log was understood as.
+struct LogNotes {
+  struct Column {
+    std::string header;  ///< as written
+    std::string name;    ///< of the program; empty: not read
+    std::string unit;    ///< as written
+    double factor;       ///< SI value over the number
+    std::string unit_si;
+    bool is_set, is_used;  ///< what was set on the bench; what a fit uses
+    bool renamed;          ///< the bench's name is another one
+    int values;            ///< numbers in it
+    double min, max;       ///< of them, SI
+  };
+  std::string encoding;
+  char separator = ',';
+  bool decimal_comma = false;
+  int remarks = 0;     ///< lines of comments
+  bool sorted = true;  ///< rows stood in the order of what was set
+  std::vector<Column> columns;
+};
+
 /// A fit as its bench file describes it, logs read. Vehicle file and logs are sought beside it. Throws InputError with
-/// file, line and reason.
-BenchFit read_bench(const std::filesystem::path& file, std::span<const std::string> overrides = {});
+/// file, line and reason. `notes` takes what each log was understood as.
+BenchFit read_bench(const std::filesystem::path& file, std::span<const std::string> overrides = {},
+                    std::vector<LogNotes>* notes = nullptr);
 
 /// The vehicle file that it names.
 std::filesystem::path vehicle_of_bench(const std::filesystem::path& file);
 
-/// One log: a header that names each column with its unit, rows growing strictly in what was set on the bench.
-/// `log` brings the condition and, of a waveform log, the operating point in `given_value`. `measured` restricts the
-/// columns used; empty: all.
+/// One log: a header that names each column with its unit, rows in any order, which come out sorted by what was set on
+/// the bench. Cells without a value are NaN in the rows and counted; rows without what was set, or without any value,
+/// are left out. `log` brings the condition and, of a waveform log, the operating point in `given_value`. `measured`
+/// restricts the columns used; empty: all.
 struct LogRequest {
   BenchLog log;
   std::optional<Given> given;         ///< empty: the file holds one of voltage and frequency
   std::optional<double> given_value;  ///< of a waveform log
   std::vector<std::string> measured;
+  /// A header as it stands in the file, and the quantity that it is, with or without unit; "ignore": not read.
+  std::vector<std::pair<std::string, std::string>> columns = {};
+  std::optional<char> separator = {}, decimal = {};  ///< where the file does not show them
 };
-BenchLog parse_log(std::string_view text, const std::string& file_name, const LogRequest& request);
+
+BenchLog parse_log(std::string_view text, const std::string& file_name, const LogRequest& request,
+                   LogNotes* notes = nullptr);
 
 }  // namespace wingbeat

@@ -17,6 +17,9 @@ std::string describe(const Misfit& misfit);
 /// A clause; empty where the data determine the parameter.
 std::string describe(Undetermined why);
 
+/// Without a robust loss, of one value that is far off where all others are not: a sentence, or nothing.
+std::string outlier_advice(const BenchFit& fit, const FitResult& result);
+
 std::string text_fit(const BenchFit& fit, const FitResult& result);
 std::string text_friction(std::span<const FrictionCandidate> candidates);
 /// One JSON object; `candidates` may be empty.

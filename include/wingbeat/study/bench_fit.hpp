@@ -45,7 +45,7 @@ struct BenchRow {
   int line = 0;                ///< in its file
   double given = 0.0;          ///< voltage [V] or frequency [Hz]
   double crank_angle = 0.0;    ///< of a waveform log [rad]
-  std::vector<double> values;  ///< SI, one per column
+  std::vector<double> values;  ///< SI, one per column; NaN where none was measured
 };
 
 struct BenchLog {
@@ -56,6 +56,8 @@ struct BenchLog {
   bool waveform = false;  ///< rows are instants of one cycle, all of the same `given`
   std::vector<MeasuredQuantity> columns;
   std::vector<BenchRow> rows;
+  int values_left_out = 0;         ///< cells without a value
+  std::vector<int> rows_left_out;  ///< their lines
 };
 
 /// Standard deviation of a column's values.

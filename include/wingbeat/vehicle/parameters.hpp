@@ -69,6 +69,9 @@ const Parameter<S>* find_parameter(std::string_view path) {
 /// "required or stroke_amplitude", "required unless pitch.stiffness", or the default.
 std::string default_text(const ParameterText& parameter);
 
+/// Alternatives with "|" between them, in words: "supply.type = pwm or battery".
+std::string with_or(std::string_view alternatives);
+
 /// True for two paths of which a design has one, such as transmission.hinge_offset and .stroke_amplitude.
 bool are_alternatives(std::string_view one, std::string_view other);
 
@@ -110,9 +113,8 @@ template <Scalar S>
 void set_parameter(Design<S>& design, std::string_view path, const S& value) {
   const Parameter<S>& parameter = numeric_parameter<S>(path);
   if (parameter.set(design, value)) return;
-  throw ParameterError(std::string(path), parameter.only_with.empty()
-                                              ? "has no place in this design"
-                                              : "only with " + std::string(parameter.only_with));
+  throw ParameterError(std::string(path), parameter.only_with.empty() ? "has no place in this design"
+                                                                      : "only with " + with_or(parameter.only_with));
 }
 
 }  // namespace wingbeat

@@ -1,0 +1,48 @@
+// CSV files as test benches, spreadsheets and data loggers write them, cut into cells.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace wingbeat::detail {
+
+struct TableCell {
+  std::string text;  ///< without quotes and blanks around it
+  int column;        ///< of its first character in the line, from 1
+};
+
+struct TableLine {
+  int number;  ///< in the file, from 1
+  std::vector<TableCell> cells;
+};
+
+/// What a file states about itself, where it cannot be seen.
+struct TableForm {
+  std::optional<char> separator;  ///< ',', ';' or '\t'
+  std::optional<char> decimal;    ///< '.' or ','
+};
+
+struct BenchTable {
+  std::string encoding = "UTF-8";
+  char separator = ',';
+  bool decimal_comma = false;  ///< numbers are written 3,14
+  int remarks = 0;             ///< lines of comments
+  TableLine header{0, {}};     ///< without cells in an empty file
+  std::vector<TableLine> rows;
+};
+
+/// A cell without a value: empty, NaN, #N/A and the like.
+bool is_missing(std::string_view cell);
+
+/// The text in UTF-8, which may come as UTF-8 or UTF-16 with or without a mark, or as Windows-1252; `encoding` tells
+/// which. Throws InputError where it is none of them.
+std::string decoded(std::string_view text, const std::string& file, std::string& encoding);
+
+/// Cells between commas, semicolons or tabs, with or without quotes, numbers with a decimal point or comma, remarks
+/// behind #, % or //, lines that end in any way. Throws InputError with a question where two readings are possible, and
+/// for rows that have not as many cells as the header.
+BenchTable read_bench_table(std::string_view text, const std::string& file, const TableForm& form = {});
+
+}  // namespace wingbeat::detail
