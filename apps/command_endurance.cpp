@@ -21,7 +21,7 @@ struct EnduranceArguments {
   std::string vehicle, output, plot, plot_width;
   std::vector<std::string> overrides;
   bool json = false, force = false;
-  bool allow_extrapolation = false;
+  bool allow_extrapolation = false, hover = false;
 };
 
 int run(const EnduranceArguments& arguments) {
@@ -29,10 +29,14 @@ int run(const EnduranceArguments& arguments) {
   if (!arguments.output.empty() && std::filesystem::path(arguments.output).extension() != ".nc") {
     throw InputError("-o " + arguments.output, 0, 0, "", "the name must end in .nc");
   }
-  const Design<double> design = read_design(arguments.vehicle, arguments.overrides);
+  Design<double> design = read_design(arguments.vehicle, arguments.overrides);
   if (!has_battery(design.supply.type)) {
     throw InputError(arguments.vehicle, 0, 0, "supply.type",
                      "only a battery runs down; expected battery or battery-sine");
+  }
+  if (arguments.hover) {
+    if (!design.mass) throw InputError("--hover", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
+    design.supply.throttle = Throttle::hover;
   }
   std::optional<OutputFile> output, plot;
   if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".nc", arguments.force});
@@ -69,6 +73,8 @@ int run(const EnduranceArguments& arguments) {
 void add_endurance(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("endurance", "How long a vehicle hovers and flaps on its battery");
   const auto a = std::make_shared<EnduranceArguments>();
+  command->add_flag("--hover", a->hover,
+                    "Fly at the throttle that just carries the weight, as supply.throttle = \"hover\"");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Flight outside the model's domain may hover (docs/domain.md)");
   add_input(command, a->vehicle, InputKind::vehicle, "vehicle", "Vehicle file (TOML) with a battery", "VEHICLE");
@@ -82,7 +88,8 @@ void add_endurance(CLI::App& program, Action& action) {
       "Example:\n  wingbeat endurance friction2022-battery --plot flight.svg\n\n"
       "The battery drains from supply.charge through steady flapping until it is empty, its terminals fall to\n"
       "supply.cutoff_voltage, or it no longer turns the crank. The vehicle hovers until its lift falls below the\n"
-      "weight or it leaves the model's domain.\n\n"
+      "weight or it leaves the model's domain. With --hover the speed control sets the duty (of a direct drive the\n"
+      "amplitude) at each charge so that the lift carries the weight, until full throttle no longer does.\n\n"
       "Exit status: 0 done, 2 bad input or usage, 3 the battery cannot start the vehicle, 1 anything else.");
   command->callback([a, &action] {
     action = [a] {

@@ -159,9 +159,9 @@ void add_run(CLI::App& program, Action& action) {
       "--frequency finds the voltage for a flapping frequency, --lift the lowest one for a mean lift. Both keep\n"
       "to the domain of validity (angles of attack from 0 to 90 deg and more) unless --allow-extrapolation; a\n"
       "refusal says how far it reaches. With a pwm supply the orbit and the searches see the mean voltage;\n"
-      "--frequency changes its voltage, --lift its duty. The charge of a battery gives its voltage, so neither is\n"
-      "for batteries. A direct drive takes --frequency as that of its sine and --lift by its amplitude; a crank on a\n"
-      "sine needs --method transient, which also reports the start-up.\n\n"
+      "--frequency changes its voltage, --lift its duty; on a battery both find the duty. A direct drive takes\n"
+      "--frequency as that of its sine and --lift by its amplitude; a crank on a sine needs --method transient,\n"
+      "which also reports the start-up.\n\n"
       "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
   command->callback([a, &action] {
     action = [a] {

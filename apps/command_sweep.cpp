@@ -27,6 +27,12 @@
 namespace wingbeat::app {
 namespace {
 
+const char* unreached_meaning(const Sweep& sweep) {
+  if (sweep.hold && is_lift(sweep.hold->held)) return "flapping, but without the lift asked for";
+  if (sweep.hold && sweep.hold->held == Held::power) return "flapping, but not on the power asked for";
+  return "flapping, but not at the frequency asked for";
+}
+
 struct SweepArguments {
   std::vector<std::string> overrides;
   std::string study, output;
@@ -127,9 +133,7 @@ std::string summary(const Study& study, const SweepResult& result) {
                                                     "the motor never starts",
                                                     "the crank comes to rest at an angle",
                                                     "the equations of motion lose their unique solution on the way",
-                                                    sweep.hold && sweep.hold->held != Held::frequency
-                                                        ? "flapping, but without the lift asked for"
-                                                        : "flapping, but not at the frequency asked for",
+                                                    unreached_meaning(sweep),
                                                     "a parameter out of its range beside the others",
                                                     "start-up came to no end within the solvers' limits"};
   for (int s = 0; s < sweep_status_count; ++s) {

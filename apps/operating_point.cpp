@@ -47,14 +47,18 @@ void add_operating_point(CLI::App* command, OperatingPointArguments& a) {
   CLI::Option* frequency = command->add_option("--frequency", a.frequency,
                                                "Find the voltage that gives this flapping frequency, as \"22 Hz\"");
   frequency->type_name("QUANTITY")->excludes(voltage);
-  CLI::Option* lift =
-      command->add_option("--lift", a.lift, "Find the voltage (pwm: the duty) that gives this mean lift, as \"20 mN\"");
+  CLI::Option* lift = command->add_option(
+      "--lift", a.lift, "Find the voltage (pwm, battery: the duty) that gives this mean lift, as \"20 mN\"");
   lift->type_name("QUANTITY")->excludes(voltage)->excludes(frequency);
-  command->add_option("--lift-to-weight", a.lift_to_weight, "The same for lift over weight; 1: hover")
-      ->type_name("NUMBER")
+  CLI::Option* ratio =
+      command->add_option("--lift-to-weight", a.lift_to_weight, "The same for lift over weight; 1: hover");
+  ratio->type_name("NUMBER")->excludes(voltage)->excludes(frequency)->excludes(lift);
+  command->add_option("--power", a.power, "The same for the mean electrical power, as \"200 mW\"")
+      ->type_name("QUANTITY")
       ->excludes(voltage)
       ->excludes(frequency)
-      ->excludes(lift);
+      ->excludes(lift)
+      ->excludes(ratio);
   add_choice<Condition>(command, "--condition", a.condition, "air (default), vacuum or wingless", "CONDITION");
 }
 
@@ -68,6 +72,10 @@ Design<double> read_operating_point(const OperatingPointArguments& arguments, Ru
   if (!arguments.lift.empty()) {
     options.lift = quantity_of("--lift", arguments.lift, "N");
     if (!(*options.lift > 0.0)) throw InputError("--lift", 0, 0, "", "must be > 0 N");
+  }
+  if (!arguments.power.empty()) {
+    options.power = quantity_of("--power", arguments.power, "W");
+    if (!(*options.power > 0.0)) throw InputError("--power", 0, 0, "", "must be > 0 W");
   }
   Design<double> design = read_design(arguments.vehicle, arguments.overrides);
   if (!arguments.lift_to_weight.empty()) {
@@ -89,6 +97,7 @@ void require_reached(const OperatingPointArguments& arguments, const RunResult& 
   // It flaps, only not so: no design that fails, but a request that cannot be met.
   const std::string asked = !arguments.frequency.empty() ? "--frequency " + arguments.frequency
                             : !arguments.lift.empty()    ? "--lift " + arguments.lift
+                            : !arguments.power.empty()   ? "--power " + arguments.power
                                                          : "--lift-to-weight " + arguments.lift_to_weight;
   const bool leaves = result.search->finding.inside_domain_only();
   throw InputError(asked, 0, 0, "",

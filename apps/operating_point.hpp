@@ -12,7 +12,7 @@ namespace wingbeat::app {
 struct OperatingPointArguments {
   std::string vehicle;
   std::vector<std::string> overrides;
-  std::string voltage, frequency, lift, lift_to_weight;
+  std::string voltage, frequency, lift, lift_to_weight, power;
   std::string condition = "air";
   bool allow_extrapolation = false;
 };
@@ -26,7 +26,7 @@ double quantity_of(const char* option, const std::string& text, const char* unit
 /// What the options ask for, into `options`; checked before the vehicle is read. Throws InputError.
 Design<double> read_operating_point(const OperatingPointArguments& arguments, RunOptions& options);
 
-/// Throws InputError where the vehicle flaps, but not at the frequency or lift that was asked for.
+/// Throws InputError where the vehicle flaps, but not at the frequency, lift or power that was asked for.
 void require_reached(const OperatingPointArguments& arguments, const RunResult& result);
 
 }  // namespace wingbeat::app

@@ -166,13 +166,14 @@ bool unreached(const RunResult& result) {
 
 py::dict run(const Design<double>& design, const std::string& condition, const std::string& method, double tolerance,
              std::optional<double> frequency, std::optional<double> lift, std::optional<double> lift_to_weight,
-             bool allow_extrapolation, int points, bool endurance) {
+             std::optional<double> power, bool allow_extrapolation, int points, bool endurance) {
   RunOptions options;
   options.condition = choice<Condition>("condition", condition);
   options.method = choice<Method>("method", method);
   require_tolerance(options.tolerance = tolerance);
   options.frequency = frequency;
   options.lift = lift;
+  options.power = power;
   if (lift_to_weight) {
     require(*lift_to_weight > 0.0, "lift_to_weight", "must be > 0", "1", *lift_to_weight);
     const Reporting reporting = reporting_of(design);
@@ -212,6 +213,7 @@ py::dict differentiate(const Design<double>& design, const std::vector<std::stri
   const SearchRange range = search_range(allow_extrapolation);
   if (held == "frequency") options.hold = Hold{Held::frequency, held_value};
   if (held == "lift") options.hold = Hold{Held::lift, held_value, range};
+  if (held == "power") options.hold = Hold{Held::power, held_value};
   if (held == "lift_to_weight") options.hold = Hold{Held::lift_to_weight, held_value, range};
   options.flight = {endurance, endurance, false};
   const DesignPoint found = listening([&] { return gradient(design, keys, options); });
@@ -346,7 +348,7 @@ PYBIND11_MODULE(_core, m) {
   m.def("quantity", &quantity);
   m.def("quantity_example", [](const std::string& unit) { return quantity_example(unit); });
   m.def("run", &run, "design"_a, "condition"_a, "method"_a, "tolerance"_a, "frequency"_a, "lift"_a, "lift_to_weight"_a,
-        "allow_extrapolation"_a, "points"_a, "endurance"_a);
+        "power"_a, "allow_extrapolation"_a, "points"_a, "endurance"_a);
   m.def("gradient", &differentiate, "design"_a, "keys"_a, "condition"_a, "tolerance"_a, "held"_a, "held_value"_a,
         "allow_extrapolation"_a, "endurance"_a);
   m.def("mechanism_svg", &mechanism_svg, "design"_a, "stroke_amplitude"_a, py::call_guard<Left>());

@@ -108,9 +108,13 @@ void write_sweep(const std::string& study, const Design<double>& vehicle, const 
 
 // ---- studies
 
-py::dict endurance(const Design<double>& design, bool allow_extrapolation) {
+py::dict endurance(Design<double> design, bool hover, bool allow_extrapolation) {
   if (!has_battery(design.supply.type)) {
     throw ParameterError("supply.type", "only a battery runs down; expected battery or battery-sine");
+  }
+  if (hover) {
+    if (!design.mass) throw ParameterError("vehicle.mass", "is the weight to be carried, which hover needs");
+    design.supply.throttle = Throttle::hover;
   }
   EnduranceOptions options;
   options.allow_extrapolation = allow_extrapolation;

@@ -71,11 +71,20 @@ void follow_temperatures(const SteadyFlapping& orbit, Vehicle<J> constant, const
 OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle& given,
                              const GradientOptions& options) {
   Vehicle<J> vehicle = given.vehicle;
-  vehicle.voltage.a = orbit.record.vehicle().voltage;
+  const double voltage = orbit.record.vehicle().voltage;
+  const bool by_duty = options.held != Held::voltage && vehicle.source_resistance.a > 0.0;
+  if (by_duty) {
+    // Of a battery the duty follows: voltage and, with its square, resistance.
+    const double ratio = voltage / vehicle.voltage.a;
+    vehicle.voltage = vehicle.voltage * ratio;
+    vehicle.source_resistance = vehicle.source_resistance * square(ratio);
+  }
+  vehicle.voltage.a = voltage;
   vehicle.drive_frequency.a = orbit.record.vehicle().drive_frequency;
   // A direct drive's frequency is its supply's: no voltage follows it, and its slot is a third state's.
   const bool voltage_varies = drive_of(vehicle).voltage_sets_frequency;
   if (voltage_varies) vehicle.voltage.v[gradient_voltage_slot] = 1.0;
+  if (by_duty) vehicle.source_resistance.v[gradient_voltage_slot] = 2.0 * vehicle.source_resistance.a / voltage;
   const MotorTemperatures<J> temperatures{J(orbit.temperatures.winding), J(orbit.temperatures.casing)};
   const bool warm = heats_up(vehicle.thermal);
   OrbitGradient g = repeat(orbit, warm ? with_motor_at(vehicle, temperatures) : vehicle, given, options);

@@ -75,6 +75,13 @@ class Reader {
     d.pitch.damping_coefficient = rotation.damping;
     attempt([&] { read_flag("pitch.rotational_lift", d.pitch.rotational_lift); });
     attempt([&] { read_flag("electronics.regeneration", d.electronics.regenerates); });
+    attempt([&] {
+      if (document_.find("supply.throttle")) d.supply.throttle = choice<Throttle>("supply.throttle");
+    });
+    attempt([&] {
+      if (d.supply.type == SupplyType::pwm && !document_.find("supply.duty"))
+        missing("supply.duty", quantity_example("1"));
+    });
     for (const auto& [section, key] :
          {std::pair("pitch", pitch_key::stiffness), std::pair("wing.torsion", torsion_key::stiffness),
           std::pair("piezo", piezo_key::force_per_volt), std::pair("electronics", electronics_key::efficiency)}) {

@@ -165,7 +165,7 @@ void StudySections::find_hold() {
   if (!hold) return;
   if (hold->kind != Kind::table)
     wrong(*hold, "study.hold", "{ voltage = \"3 V\" }, { frequency = \"22 Hz\" } or { lift_to_weight = 1 }");
-  known_keys(*hold, "study.hold", {"voltage", "frequency", "lift", "lift_to_weight"});
+  known_keys(*hold, "study.hold", {"voltage", "frequency", "lift", "lift_to_weight", "power"});
   held_voltage_ = hold->find("voltage");
   for (const HeldKey& key : held_keys) {
     const TomlNode* target = hold->find(std::string(key.key));
@@ -177,7 +177,7 @@ void StudySections::find_hold() {
   const bool nothing_known = !held_voltage_ && !held_target_ && !hold->members.empty();
   if (nothing_known) finish();  // which is reported already
   if (bool(held_voltage_) == bool(held_target_)) {
-    refuse(*hold, "study.hold", "give one of voltage, frequency, lift and lift_to_weight");
+    refuse(*hold, "study.hold", "give one of voltage, frequency, lift, lift_to_weight and power");
   }
   if (held_voltage_ && !(quantity(*held_voltage_, "study.hold.voltage", "V") >= 0.0)) {
     refuse(*held_voltage_, "study.hold.voltage", "must be >= 0 V");
@@ -317,9 +317,6 @@ const HeldKey& held_key(Held held) {
 }
 
 std::string no_hold(const HeldKey& key, const Design<double>& design) {
-  if (design.supply.type == SupplyType::battery) {
-    return fmt::format("the charge of a battery gives its voltage, so none can be found for a {}", key.name);
-  }
   if (key.held == Held::lift_to_weight && !total_mass(design)) return "the vehicle states no mass; give vehicle.mass";
   return "";
 }
@@ -353,7 +350,7 @@ DesignParameter StudySections::parameter_named(const TomlNode& node, const std::
     const bool has_place = parameter.set(trial, 1.0);
     refuse(node, where,
            has_place ? fmt::format("{} is not in the vehicle; give it in [set] first", key)
-                     : fmt::format("{}: only with {}", key, only_with));
+                     : fmt::format("{}: only with {}", key, with_or(only_with)));
   }
   return parameter;
 }

@@ -44,6 +44,7 @@ inline constexpr HeldKey held_keys[] = {
     {"frequency", Held::frequency, "Hz", "frequency", "frequency"},
     {"lift", Held::lift, "N", "mean lift", "lift"},
     {"lift_to_weight", Held::lift_to_weight, "1", "lift over the weight", "held_lift_to_weight"},
+    {"power", Held::power, "W", "electrical power", "power"},
 };
 /// Of a value to be held.
 std::string must_be_positive(std::string_view unit);

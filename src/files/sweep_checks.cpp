@@ -128,9 +128,9 @@ class SweepChecks {
   void check_hold(const HeldKey& held, const Design<double>& design,
                   const std::function<SourceLocation(const char*)>& source_of) const {
     const std::string why = no_hold(held, design);
-    const bool battery = design.supply.type == SupplyType::battery;
-    const char* blamed = battery ? "supply.type" : "vehicle.mass";
-    if (!why.empty() && (battery || !places_.keys.contains(blamed))) reader_.refuse(source_of(blamed), blamed, why);
+    if (!why.empty() && !places_.keys.contains("vehicle.mass")) {
+      reader_.refuse(source_of("vehicle.mass"), "vehicle.mass", why);
+    }
     if (design.supply.type == SupplyType::pwm && !(design.supply.duty > 0.0)) {
       const char* name = held.held == Held::frequency ? "flapping frequency" : held.name;
       reader_.refuse(source_of("supply.duty"), "supply.duty", fmt::format("is 0: no voltage sets the {}", name));
@@ -141,7 +141,9 @@ class SweepChecks {
     }
     for (const char* key : {"supply.voltage", "supply.duty", "supply.amplitude"}) {
       if (places_.keys.contains(key) && is_void_at(held, key, design)) {
-        reader_.refuse(source_of(key), key, no_effect + ": the voltage is found for it");
+        const bool duty = design.supply.type == SupplyType::battery;
+        reader_.refuse(source_of(key), key,
+                       fmt::format("{}: the {} is found for it", no_effect, duty ? "duty" : "voltage"));
       }
     }
   }
@@ -187,8 +189,9 @@ class SweepChecks {
         const SweptQuantity& quantity = axis.quantities[q];
         if (quantity.set(d, number_at(axis, q, 0.5))) return;
         const std::string_view only_with = find_parameter<double>(quantity.key)->only_with;
-        reader_.refuse(places_.keys.at(quantity.key), quantity.key,
-                       only_with.empty() ? "has no place in this vehicle" : fmt::format("only with {}", only_with));
+        reader_.refuse(
+            places_.keys.at(quantity.key), quantity.key,
+            only_with.empty() ? "has no place in this vehicle" : fmt::format("only with {}", with_or(only_with)));
       });
       for_each_number([&](const SweepAxis& axis, std::size_t q) {
         const SweptQuantity& quantity = axis.quantities[q];

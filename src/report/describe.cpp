@@ -20,6 +20,37 @@ std::string below(const SearchFinding& f) {
   return fmt::format("; below, it is {} ({})", name_of(f.status), describe(f.evidence));
 }
 
+std::string describe_power(const SearchFinding& f) {
+  const std::string cannot = fmt::format("{:.5g} W cannot be held", f.target);
+  switch (f.kind) {
+    case Finding::out_of_range: {
+      std::string text = fmt::format("{}: at {:.4g} V, where it takes {:.4g} W, it leaves the range that is searched",
+                                     cannot, f.point->voltage, f.point->value);
+      if (!f.limits.empty()) text += " (" + describe(f.limits) + ")";
+      if (f.max_point) {
+        text +=
+            fmt::format("; inside it takes {:.4g} W at most, at {:.4g} V", f.max_point->value, f.max_point->voltage);
+      }
+      return text;
+    }
+    case Finding::jumps:
+      return fmt::format(
+          "at {:.5g} V the electrical power jumps from {:.5g} W to {:.5g} W: {:.5g} W in between cannot be held",
+          f.point->voltage, f.min_point->value, f.point->value, f.target);
+    case Finding::too_low_at_first:
+      return fmt::format("{}: at {:.4g} V, the lowest voltage tried, it takes {:.4g} W already", cannot,
+                         f.point->voltage, f.point->value);
+    case Finding::too_low_at_onset:
+      return fmt::format("{}: from rest it flaps only above {:.4g} V, and there takes {:.4g} W already", cannot,
+                         f.point->voltage, f.point->value) +
+             below(f);
+    case Finding::too_high:
+      return fmt::format("{}: up to {:.4g} V it takes {:.4g} W at most, at {:.4g} V", cannot, f.last_voltage,
+                         f.max_point->value, f.max_point->voltage);
+    default: return "";
+  }
+}
+
 std::string describe_frequency(const SearchFinding& f, const char* inside) {
   const std::string cannot = fmt::format("{:.5g} Hz cannot be reached", f.target);
   switch (f.kind) {
@@ -108,7 +139,9 @@ std::string describe(const SearchFinding& f) {
     text = fmt::format("it flaps at no voltage up to {:.4g} V; there it is {}: {}", f.last_voltage, name_of(f.status),
                        describe(f.evidence));
   } else {
-    text = f.sought == Sought::lift ? describe_lift(f, inside) : describe_frequency(f, inside);
+    text = f.sought == Sought::lift    ? describe_lift(f, inside)
+           : f.sought == Sought::power ? describe_power(f)
+                                       : describe_frequency(f, inside);
   }
   if (f.full_duty_voltage) text += fmt::format("; a duty of 1 gives {:.4g} V", *f.full_duty_voltage);
   return text;
@@ -118,6 +151,7 @@ std::string describe(const Hold& hold) {
   switch (hold.held) {
     case Held::lift: return fmt::format("mean lift held at {:.6g} mN", 1e3 * hold.value);
     case Held::lift_to_weight: return fmt::format("lift held at {:.6g} times the weight", hold.value);
+    case Held::power: return fmt::format("electrical power held at {:.6g} mW", 1e3 * hold.value);
     default: return fmt::format("flapping held at {:.6g} Hz", hold.value);
   }
 }
@@ -130,6 +164,9 @@ std::string describe(const RunResult& r) {
     if (r.search && r.search->finding.sought == Sought::lift) {
       text += fmt::format(", at a duty of {:.6g}", r.design.supply.duty);
     }
+  }
+  if (r.search && r.design.supply.type == SupplyType::battery) {
+    text += fmt::format("; the battery gives it at a duty of {:.6g}", r.design.supply.duty);
   }
   return text;
 }
@@ -148,6 +185,10 @@ std::string described_end(const EnduranceResult& r) {
   if (r.end == EnduranceEnd::never_starts) {
     return fmt::format("the battery cannot start the vehicle at a charge of {:.4g} ({:.4g} V without load): {}",
                        r.first_charge, r.first_voltage, describe(r.evidence));
+  }
+  if (r.rows.empty()) {
+    return fmt::format("at full throttle, a charge of {:.4g} and {:.4g} V without load, {}", r.first_charge,
+                       r.first_voltage, describe(r.evidence));
   }
   const EnduranceRow& last = r.rows.back();
   const double v = last.terminal_voltage;
@@ -185,6 +226,9 @@ std::string described_end(const EnduranceResult& r) {
       return fmt::format(
           "after {:.4g} s, at a charge of {:.4g} and {:.4g} V at the terminals, the battery no longer turns the crank",
           last.time, last.charge, v);
+    case EnduranceEnd::sinks:
+      return fmt::format("after {:.4g} s, at a charge of {:.4g}, full throttle no longer carries the weight", last.time,
+                         last.charge);
     case EnduranceEnd::never_starts: break;
   }
   return "";
@@ -194,6 +238,10 @@ std::string described_end(const EnduranceResult& r) {
 
 std::string describe(const EnduranceResult& r) {
   const std::string end = described_end(r);
+  if (r.rows.empty() && r.end == EnduranceEnd::sinks) {
+    return fmt::format("it does not hover: full throttle lifts {:.4g} of the weight; {}", r.first_full_lift_to_weight,
+                       end);
+  }
   if (r.rows.empty() || !(r.endurance() > 0.0)) return end;
   const EnduranceRow& first = r.rows.front();
   const double lift_to_weight = first.metrics[Metric::lift_to_weight];
@@ -206,11 +254,17 @@ std::string describe(const EnduranceResult& r) {
                          name_of(first.domain), lift_to_weight, end);
     case Hover::lost: {
       const EnduranceRow& lost = *r.hover_lost;
-      const bool sinks = std::abs(lost.metrics[Metric::lift_to_weight] - 1.0) < 1e-6;
+      const bool sinks = r.throttle == Throttle::fixed && std::abs(lost.metrics[Metric::lift_to_weight] - 1.0) < 1e-6;
       return fmt::format("it hovers for {:.4g} s, until {} at a charge of {:.4g}; {}", lost.time,
                          sinks ? "lift falls below the weight" : "it leaves the model's domain", lost.charge, end);
     }
-    case Hover::kept: return "it hovers to the end; " + end;
+    case Hover::kept:
+      if (r.end == EnduranceEnd::sinks) {
+        return fmt::format(
+            "it hovers for {:.4g} s, until full throttle no longer carries the weight, at a charge of {:.4g}",
+            r.endurance(), r.rows.back().charge);
+      }
+      return "it hovers to the end; " + end;
   }
   return end;
 }

@@ -53,6 +53,8 @@ constexpr Column columns[] = {
     {"open_circuit_voltage_v", "V", "open-circuit voltage of the battery", &EnduranceRow::open_circuit_voltage},
     {"terminal_voltage_v", "V", "mean voltage at the battery's terminals", &EnduranceRow::terminal_voltage},
     {"battery_current_a", "A", "mean current from the battery", &EnduranceRow::battery_current},
+    {"duty", "1", "duty of the speed control", &EnduranceRow::duty},
+    {"lift_to_weight_full", "1", "lift over weight at a duty of 1", &EnduranceRow::full_lift_to_weight},
     {"energy_electrical_j", "J", "energy delivered at the terminals since the start", &EnduranceRow::energy_electrical},
     {"energy_internal_j", "J", "energy lost inside the battery since the start", &EnduranceRow::energy_internal},
     {"energy_aerodynamic_j", "J", "energy given to the air since the start", &EnduranceRow::energy_aerodynamic}};
@@ -100,6 +102,7 @@ const char* name_of(EnduranceEnd end) {
     case EnduranceEnd::cutoff: return "cut-off voltage";
     case EnduranceEnd::bridge: return "bridge";
     case EnduranceEnd::stops: return "stops flapping";
+    case EnduranceEnd::sinks: return "sinks";
   }
   return "unknown";
 }
@@ -131,6 +134,10 @@ Json history_of(const Flight& flight) {
     for (const EnduranceRow& row : flight.rows) history[key].push_back(detail::number_or_null(row.metrics[m]));
   }
   for (const EnduranceRow& row : flight.rows) history["domain"].push_back(name_of(row.domain));
+  for (const EnduranceRow& row : flight.rows) {
+    const bool known = std::isfinite(row.full_lift_to_weight);
+    history["domain_full"].push_back(known ? Json(name_of(row.full_domain)) : Json(nullptr));
+  }
   return history;
 }
 
@@ -169,7 +176,12 @@ const Description<EnduranceResult>& endurance_description() {
           .always("hover", "",
                   "whether and how long the lift carries the weight: unknown, never, outside domain, lost, kept",
                   [](const R& r) { return name_of(r.hover); })
+          .always("throttle", "", "fixed, or hover: the lift is held at the weight",
+                  [](const R& r) { return name_of(r.throttle); })
           .always("hover_s", "s", "flight time until lift falls below the weight", &R::hover_time)
+          .always("lift_to_weight_full", "1",
+                  "lift over weight at full throttle and the first charge; null at a fixed one",
+                  &R::first_full_lift_to_weight)
           .always("end", "", "what ends the flight", [](const R& r) { return name_of(r.end); })
           .always("endurance_s", "s", "flight time until the battery's end", &R::endurance, schema::any_number)
           .always("domain", "", "inside, or the limits that are left during the flight",
@@ -262,7 +274,7 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
       break;
     }
   }
-  line("flaps for", duration(f.time), minutes(f.time));
+  if (result.end != EnduranceEnd::sinks) line("flaps for", duration(f.time), minutes(f.time));
 
   text += "\nBattery\n";
   line("charge drawn", readable(f.drawn / 3.6, "mA h"),
@@ -299,6 +311,19 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
     fmt::format_to(out, "  {:<22}{:>14.4g}{:>14.4g}{:>14.4g}\n", "mean lift / weight",
                    first.metrics[Metric::lift_to_weight], f.lift / weight, f.last.metrics[Metric::lift_to_weight]);
   }
+  const bool throttled = result.throttle == Throttle::hover, has_duty = std::isfinite(first.duty);
+  const bool full_outside = first.full_domain.any() || f.last.full_domain.any();
+  if (throttled && has_duty) {
+    const auto margin = [](const EnduranceRow& row) {
+      if (!std::isfinite(row.full_lift_to_weight)) return std::string("-");
+      return fmt::format("{:.4g}{}", row.full_lift_to_weight, row.full_domain.any() ? "*" : "");
+    };
+    fmt::format_to(out, "  {:<22}{:>14}{:>14}{:>14}\n", "  at full duty", margin(first), "-", margin(f.last));
+  }
+  if (has_duty && (throttled || first.duty < 1.0)) {
+    fmt::format_to(out, "  {:<22}{:>14.4g}{:>14}{:>14.4g}\n", "duty", first.duty, "-", f.last.duty);
+  }
+  if (std::isfinite(first.amplitude)) of_battery("amplitude", &EnduranceRow::amplitude, "V", absent);
   over_flight("flapping frequency", Metric::frequency, "Hz", absent);
   for (const Metric m : {Metric::winding_temperature, Metric::case_temperature}) {
     if (!heated(f)) break;
@@ -307,6 +332,7 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
                    m == Metric::winding_temperature ? "winding temperature" : "case temperature", degrees(first), "-",
                    degrees(f.last));
   }
+  if (throttled && full_outside) text += "  * outside the model's domain at full duty\n";
   return text;
 }
 
@@ -319,8 +345,16 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   const bool in_minutes = result.endurance() >= 120.0;
   const double time_scale = in_minutes ? 1.0 / 60.0 : 1.0;
   double max_lift = weighed ? weight : 0.0, max_power = 0.0;
+  const auto full_lift = [&](const EnduranceRow& r) {
+    return std::isfinite(r.full_lift_to_weight) && r.full_domain.none() ? weight * r.full_lift_to_weight : absent;
+  };
+  bool has_margin = false;
   for (const EnduranceRow& r : rows) {
     max_lift = std::max(max_lift, r.metrics[Metric::lift_mean]);
+    if (!std::isnan(full_lift(r))) {
+      has_margin = true;
+      max_lift = std::max(max_lift, full_lift(r));
+    }
     max_power = std::max(max_power, r.metrics[Metric::power_electrical]);
   }
   const bool lift_in_newton = max_lift >= 1.0, power_in_watt = max_power >= 1.0;
@@ -329,9 +363,9 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   Figure figure(format, 5.6);
   figure.add("$flight << END\n");
   for (const EnduranceRow& r : rows) {
-    figure.add("{} {} {} {} {} {} {}\n", time_scale * r.time, lift_scale * r.metrics[Metric::lift_mean],
+    figure.add("{} {} {} {} {} {} {} {} {}\n", time_scale * r.time, lift_scale * r.metrics[Metric::lift_mean],
                power_scale * r.metrics[Metric::power_electrical], power_scale * r.metrics[Metric::power_aerodynamic],
-               r.terminal_voltage, r.open_circuit_voltage, 100.0 * r.charge);
+               r.terminal_voltage, r.open_circuit_voltage, 100.0 * r.charge, lift_scale * full_lift(r), 100.0 * r.duty);
   }
   figure.add("END\nset multiplot\nset xrange [0:{}]\n", time_scale * result.endurance());
 
@@ -364,20 +398,24 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
     }
   };
 
+  constexpr const char* lost_line = "dt (3,3) lw 0.8 lc rgb '#404040'";
   panel(0, fmt::format("lift ({})", lift_in_newton ? "N" : "mN"), lift_scale * max_lift);
   figure.key_entry(left, key_height, style::first_curve, "mean lift");
   if (weighed) {
     figure.key_entry(left + 0.22, key_height, style::reference_line,
                      fmt::format("weight, {:.4g} {}", lift_scale * weight, lift_in_newton ? "N" : "mN"));
-    if (result.hover_lost) figure.key_entry(left + 0.56, key_height, "dt (3,3) lw 0.8 lc rgb '#404040'", "hover lost");
+    if (result.hover_lost && !has_margin) figure.key_entry(left + 0.56, key_height, lost_line, "hover lost");
   }
+  if (has_margin) figure.key_entry(left + 0.56, key_height, style::second_curve, "at full duty");
   figure.add("plot $flight using 1:2 with lines {}", style::first_curve);
+  if (has_margin) figure.add(", '' using 1:8 with lines {}", style::second_curve);
   if (weighed) figure.add(", {} with lines {}", lift_scale * weight, style::reference_line);
   figure.add("\n");
 
   panel(1, power_in_watt ? "power (W)" : "power (mW)", power_scale * max_power);
   figure.key_entry(left, key_height, style::first_curve, "electrical");
   figure.key_entry(left + 0.22, key_height, style::stroke(style::aerodynamic), "aerodynamic");
+  if (result.hover_lost && has_margin) figure.key_entry(left + 0.56, key_height, lost_line, "hover lost");
   figure.add("plot $flight using 1:3 with lines {}, '' using 1:4 with lines {}\n", style::first_curve,
              style::stroke(style::aerodynamic));
 
@@ -387,7 +425,8 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   figure.add("plot $flight using 1:5 with lines {}, '' using 1:6 with lines {}\n", style::first_curve,
              style::second_curve);
 
-  panel(3, "charge (%)", 100.0);
+  const bool shows_duty = result.throttle == Throttle::hover && std::isfinite(rows.front().duty);
+  panel(3, shows_duty ? "charge, duty (%)" : "charge (%)", 100.0);
   const bool hatched = outside(result).first > 0;
   if (hatched) {
     figure.text("hatched: outside the model's domain", style::text_size, fmt::format("screen {},0.014 right", right));
@@ -395,8 +434,11 @@ void plot_endurance(const Design<double>& design, const EnduranceResult& result,
   figure.text(in_minutes ? "time (min)" : "time (s)", 7.5,
               hatched ? fmt::format("screen {},0.014 left", left)
                       : fmt::format("screen {},0.014 center", 0.5 * (left + right)));
-  figure.key_entry(left, key_height, style::first_curve, "state of charge");
-  figure.add("plot $flight using 1:7 with lines {}\n", style::first_curve);
+  figure.key_entry(left, key_height, style::first_curve, shows_duty ? "charge" : "state of charge");
+  if (shows_duty) figure.key_entry(left + 0.22, key_height, style::second_curve, "duty");
+  figure.add("plot $flight using 1:7 with lines {}", style::first_curve);
+  if (shows_duty) figure.add(", '' using 1:9 with lines {}", style::second_curve);
+  figure.add("\n");
   figure.add("unset multiplot\nunset output\n");
   run_gnuplot(figure.script(), file);
 }

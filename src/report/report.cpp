@@ -243,6 +243,9 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
     table.line("duty", fmt::format("{:.4g}", result.design.supply.duty),
                fmt::format("of {}", readable(result.design.supply.voltage, "V")));
   }
+  if (result.design.supply.type == SupplyType::battery && result.design.supply.duty < 1.0) {
+    table.line("duty", fmt::format("{:.4g}", result.design.supply.duty), "of the battery's voltage");
+  }
   if (result.design.motors > 1.0) {
     table.line("motors", fmt::format("{:.0f}", result.design.motors), "currents, powers and lift are of all of them");
   }

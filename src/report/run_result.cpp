@@ -103,9 +103,11 @@ const Description<RunResult>& run_description() {
           .always("warnings", "", "sentences", &warnings_of)
           .all_of(metrics_description(), &R::metrics)
           .sometimes(
-              "supply_duty", "1", "of a pwm supply",
+              "supply_duty", "1", "of a pwm supply or a battery",
               [](const R& r) {
-                return r.design.supply.type == SupplyType::pwm ? std::optional(r.design.supply.duty) : std::nullopt;
+                const SupplyType type = r.design.supply.type;
+                const bool switched = type == SupplyType::pwm || type == SupplyType::battery;
+                return switched ? std::optional(r.design.supply.duty) : std::nullopt;
               },
               schema::any_number)
           .sometimes_part("start_up", "of a run simulated from rest", start_up_description(), &R::start_up);

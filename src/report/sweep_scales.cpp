@@ -130,7 +130,11 @@ bool Field::lower_is_better() const {
 
 const char* without_numbers(const Sweep& sweep) {
   if (!sweep.hold) return "does not flap";
-  return sweep.hold->held == Held::frequency ? "does not flap, or not so fast" : "does not flap, or without that lift";
+  switch (sweep.hold->held) {
+    case Held::frequency: return "does not flap, or not so fast";
+    case Held::power: return "does not flap, or not on that power";
+    default: return "does not flap, or without that lift";
+  }
 }
 
 std::string design_note(int status, unsigned domain) {

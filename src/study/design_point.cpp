@@ -23,17 +23,22 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
     point.error = error.what();
     return point;
   }
+  std::optional<Hold> hold = options.hold;
+  if (hold) {
+    set_full_duty(design.supply);
+    hold->highest_voltage = highest_voltage(design.supply);
+  }
   Vehicle<double> vehicle = resolve(design, options.condition);
   const SteadyOptions steady{options.tolerance, false, reporting_of(design)};
   if (options.hold && !driven) {
-    const FrequencySearch search = find_voltage(vehicle, *options.hold, steady, start_up);
+    const FrequencySearch search = find_voltage(vehicle, *hold, steady, start_up);
     if (search.outcome != FrequencyOutcome::reached) {
       const bool flaps = search.status == FlappingStatus::flapping;
       point.status = flaps ? SweepStatus::unreached : sweep_status(search.status);
       point.refused = search.finding;
       return point;
     }
-    vehicle.voltage = search.voltage;
+    set_mean_voltage(vehicle, search.voltage);
   }
   const SteadyFlapping orbit = find_steady_flapping(vehicle, steady, start_up);
   point.status = sweep_status(orbit.status);

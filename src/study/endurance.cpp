@@ -7,6 +7,7 @@
 #include <cmath>
 #include <map>
 
+#include "study/flight_moment.hpp"
 #include "study/flight_path.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/root.hpp"
@@ -35,116 +36,71 @@ struct Piece {
   }
 };
 
-struct State {
-  bool flaps = false;
-  FlappingStatus status = FlappingStatus::stalled;
-  StatusEvidence evidence;
-  Metrics<double> metrics;
-  DomainStatus domain = {};
-};
+using detail::BatteryLoad;
+using detail::FlightMoment;
+using detail::FlightMoments;
 
 class Flight {
  public:
   Flight(const Design<double>& design, const EnduranceOptions& options)
       : battery_(design.supply.battery),
-        bridged_(design.supply.type == SupplyType::battery_sine),
         options_(options),
-        vehicle_(resolve(design, options.condition)),
+        moments_(design, options),
         winding_time_(design.motor.thermal.time_constant_winding),
         case_time_(design.motor.thermal.time_constant_case) {
-    steady_.tolerance = std::max(0.01 * options.tolerance, 1e-12);
-    steady_.stability = false;
-    steady_.reporting = reporting_of(design);
     result_.capacity = battery_.capacity;
+    result_.throttle = design.supply.throttle;
   }
 
   EnduranceResult run() {
     const double first = battery_.charge;
-    const bool warms_up = heats_up(vehicle_.thermal) && winding_time_;
-    const double T_amb = vehicle_.thermal.ambient_temperature;
-    const State start = warms_up ? solve_at(open_circuit_voltage(battery_, first), {T_amb, T_amb}, start_up_in_time())
-                                 : solve(first, start_up_in_time());
-    result_.status = start.status;
-    result_.evidence = start.evidence;
-    if (std::isfinite(steady_.reporting.mass)) result_.hover = Hover::never;
+    FlightMoments::Temperatures ambient;
+    if (heats_up(moments_.thermal()) && winding_time_) {
+      const double T_amb = moments_.thermal().ambient_temperature;
+      ambient = MotorTemperatures<double>{T_amb, T_amb};
+    }
     result_.first_charge = first;
     result_.first_voltage = open_circuit_voltage(battery_, first);
     if (battery_.cutoff_voltage) result_.cutoff_voltage = battery_.cells * *battery_.cutoff_voltage;
-    if (!start.flaps) return std::move(result_);
-    if (warms_up) {
+    if (moments_.weighed()) result_.hover = Hover::never;
+    const FlightMoment start = moments_.at(result_.first_voltage, ambient, start_up_in_time());
+    result_.status = start.status;
+    result_.evidence = start.evidence;
+    if (moments_.throttled()) note_full_throttle(ambient);
+    if (start.flaps && ambient) {
       discharge_warming_up(start);
-      return std::move(result_);
+    } else if (start.flaps) {
+      known_[first] = start;
+      const double last = last_charge();
+      std::optional<double> hover;
+      if (moments_.weighed()) hover = hover_charge(last);
+      discharge(last, hover);
+    } else if (moments_.throttled() && result_.status == FlappingStatus::flapping) {
+      result_.end = EnduranceEnd::sinks;
     }
-    known_[first] = start;
-    const double last = last_charge();
-    std::optional<double> hover;
-    if (std::isfinite(steady_.reporting.mass)) hover = hover_charge(last);
-    discharge(last, hover);
+    result_.evaluations = moments_.evaluations();
     return std::move(result_);
   }
 
  private:
-  State solve(double charge, const StartUp& start_up) {
-    return solve_at(open_circuit_voltage(battery_, charge), start_up);
-  }
-  State solve_at(double voltage, const StartUp& start_up) {
-    if (on_bridge_) return *on_bridge_;
-    ++result_.evaluations;
-    if (!bridged_) vehicle_.voltage = voltage;
-    const SteadyFlapping found = find_steady_flapping(vehicle_, steady_, start_up);
-    const bool flaps = found.status == FlappingStatus::flapping;
-    const State state{flaps, found.status, found.evidence, found.metrics,
-                      flaps ? domain_of(vehicle_, found.metrics) : DomainStatus()};
-    if (bridged_) on_bridge_ = state;
-    return state;
-  }
-
-  /// The vehicle at an instant of a flight on which its motor has not settled: temperatures and domain are that
-  /// instant's.
-  State solve_at(double voltage, const MotorTemperatures<double>& T, const StartUp& start_up) {
-    ++result_.evaluations;
-    if (!bridged_) vehicle_.voltage = voltage;
-    const SteadyFlapping found = detail::find_flapping_as_it_is(with_motor_at(vehicle_, T), steady_, start_up);
-    State state{found.status == FlappingStatus::flapping, found.status, found.evidence, found.metrics, {}};
-    if (!state.flaps) return state;
-    Metrics<double>& m = state.metrics;
-    m[Metric::winding_temperature] = T.winding - zero_celsius;
-    m[Metric::case_temperature] = T.casing - zero_celsius;
-    m[Metric::winding_temperature_margin] = vehicle_.thermal.winding_temperature_max - T.winding;
-    state.domain = domain_of(vehicle_, m);
-    return state;
+  /// What the vehicle does at full throttle from rest, which says why it does not hover where it cannot.
+  void note_full_throttle(const FlightMoments::Temperatures& ambient) {
+    const SteadyFlapping full = moments_.at_full_throttle(result_.first_voltage, ambient, start_up_in_time());
+    result_.status = full.status;
+    result_.evidence = full.evidence;
+    result_.first_full_lift_to_weight = full.metrics[Metric::lift_to_weight];
   }
 
   /// The turning vehicle at a charge: no start from rest is asked for.
-  const State& at(double charge) {
+  const FlightMoment& at(double charge) {
     if (battery_.discharge_curve.empty()) charge = battery_.charge;
     const auto found = known_.find(charge);
     if (found != known_.end()) return found->second;
-    return known_[charge] = solve(charge, {});
+    return known_[charge] = moments_.at(open_circuit_voltage(battery_, charge), {}, {});
   }
 
-  /// What the battery gives, on the average, at an open-circuit voltage.
-  struct Load {
-    double voltage, current;  ///< at its terminals [V], [A]; absent where it cannot give the power
-    double internal_power;    ///< [W]
-  };
-  Load load_of(const Metrics<double>& m, double voltage) const {
-    const double R_i = source_resistance(battery_);
-    const bool passed_on = bridged_ || std::isfinite(m[Metric::power_electronics]);
-    if (!passed_on) return {m[Metric::voltage], m[Metric::current_mean], R_i * square(m[Metric::current_rms])};
-    // The smaller of the two currents that give the power.
-    const double P_e = m[Metric::power_electrical],
-                 current = 2.0 * P_e / (voltage + std::sqrt(square(voltage) - 4.0 * R_i * P_e));
-    return {voltage - R_i * current, current, R_i * square(current)};
-  }
-
-  /// Why there is no flight at that charge; empty where there is.
-  std::optional<EnduranceEnd> end_at(const State& s, double charge) const {
-    if (!s.flaps) return EnduranceEnd::stops;
-    const double v = load_of(s.metrics, open_circuit_voltage(battery_, charge)).voltage;
-    if (bridged_ && !(v >= vehicle_.voltage)) return EnduranceEnd::bridge;
-    if (battery_.cutoff_voltage && !(v > battery_.cells * *battery_.cutoff_voltage)) return EnduranceEnd::cutoff;
-    return std::nullopt;
+  std::optional<EnduranceEnd> end_at(const FlightMoment& moment, double charge) const {
+    return moments_.end_at(moment, open_circuit_voltage(battery_, charge));
   }
   bool flies(double charge) { return !end_at(at(charge), charge); }
 
@@ -184,7 +140,7 @@ class Flight {
 
   /// The charge at which lift falls below the weight for the first time.
   std::optional<double> hover_charge(double last) {
-    const auto lifts = [&](double charge) { return at(charge).metrics[Metric::lift_to_weight] >= 1.0; };
+    const auto lifts = [&](double charge) { return moments_.carries(at(charge)); };
     const auto hovers = [&](double charge) {
       return lifts(charge) && (options_.allow_extrapolation || at(charge).domain.none());
     };
@@ -217,8 +173,9 @@ class Flight {
   /// What a charge drawn at an open-circuit voltage gives for each unit of it. Through that voltage alone the state of
   /// charge acts on the vehicle.
   Totals at_voltage(double voltage) {
-    const Metrics<double> m = solve_at(voltage, {}).metrics;
-    const Load load = load_of(m, voltage);
+    const FlightMoment s = moments_.at(voltage, {}, {});
+    const Metrics<double>& m = s.metrics;
+    const BatteryLoad load = moments_.load_of(s, voltage);
     const double per_current = battery_.capacity / load.current;
     return {per_current, m[Metric::power_electrical] * per_current, load.internal_power * per_current,
             m[Metric::power_aerodynamic] * per_current, m[Metric::lift_mean] * per_current};
@@ -309,11 +266,21 @@ class Flight {
     }
   }
 
-  EnduranceRow row(double charge, const Totals& sum, const State& s) const {
+  EnduranceRow row(double charge, const Totals& sum, const FlightMoment& s, const FlightMoments::Temperatures& T = {}) {
     const double voltage = open_circuit_voltage(battery_, charge);
-    const Load load = load_of(s.metrics, voltage);
-    return {sum[time], charge,    voltage,  sum[electrical], sum[internal], sum[aerodynamic],
-            sum[lift], s.metrics, s.domain, load.voltage,    load.current};
+    const BatteryLoad load = moments_.load_of(s, voltage);
+    EnduranceRow row{sum[time], charge,    voltage,  sum[electrical], sum[internal], sum[aerodynamic],
+                     sum[lift], s.metrics, s.domain, load.voltage,    load.current};
+    if (!moments_.bridged()) row.duty = s.duty;
+    else if (moments_.throttled()) row.amplitude = s.voltage;
+    if (moments_.throttled() && !moments_.bridged() && options_.climb_margin) {
+      const SteadyFlapping full = moments_.at_full_throttle(voltage, T, {});
+      if (full.status == FlappingStatus::flapping) {
+        row.full_lift_to_weight = full.metrics[Metric::lift_to_weight];
+        row.full_domain = moments_.domain_at_full_throttle(voltage, full.metrics);
+      }
+    }
+    return row;
   }
 
   void discharge(double last, const std::optional<double>& hover) {
@@ -337,20 +304,20 @@ class Flight {
 
   /// Totals over the flight with the motor's two temperatures as states of their own, from the surroundings on: winding
   /// over case with tau_w, case over air with tau_c, each towards what the losses of the moment lead to.
-  void discharge_warming_up(const State& start) {
+  void discharge_warming_up(const FlightMoment& start) {
     enum { over_case = total_count, casing, state_count };
     using Path = std::array<double, state_count>;
-    const MotorThermal<double>& thermal = vehicle_.thermal;
+    const MotorThermal<double>& thermal = moments_.thermal();
     const double first = battery_.charge, T_amb = thermal.ambient_temperature;
     const auto state_at = [&](double drawn, const Path& y) {
-      return solve_at(open_circuit_voltage(battery_, std::max(first - drawn, 0.0)),
-                      {y[casing] + y[over_case], y[casing]}, {});
+      return moments_.at(open_circuit_voltage(battery_, std::max(first - drawn, 0.0)),
+                         MotorTemperatures<double>{y[casing] + y[over_case], y[casing]}, {});
     };
     const auto rates = [&](double drawn, const Path& y) -> std::optional<Path> {
-      const State s = state_at(drawn, y);
+      const FlightMoment s = state_at(drawn, y);
       if (!s.flaps) return std::nullopt;
       const Metrics<double>& m = s.metrics;
-      const Load load = load_of(m, open_circuit_voltage(battery_, std::max(first - drawn, 0.0)));
+      const BatteryLoad load = moments_.load_of(s, open_circuit_voltage(battery_, std::max(first - drawn, 0.0)));
       const double per_charge = battery_.capacity / load.current;
       if (!std::isfinite(per_charge)) return std::nullopt;
       const double P_cu = m[Metric::power_copper];
@@ -364,14 +331,13 @@ class Flight {
                   (target.winding - target.casing - y[over_case]) / *winding_time_ * per_charge,
                   (target.casing - y[casing]) / *case_time_ * per_charge};
     };
-    const auto row_at = [&](double drawn, const Path& y, const State& s) {
+    const auto row_at = [&](double drawn, const Path& y, const FlightMoment& s) {
       Totals sum;
       std::copy_n(y.begin(), sum.size(), sum.begin());
-      return row(std::max(first - drawn, 0.0), sum, s);
+      return row(std::max(first - drawn, 0.0), sum, s, MotorTemperatures<double>{y[casing] + y[over_case], y[casing]});
     };
-    const auto lifts = [](const State& s) { return s.metrics[Metric::lift_to_weight] >= 1.0; };
-    const auto hovers = [&](const State& s) {
-      return s.flaps && lifts(s) && (options_.allow_extrapolation || s.domain.none());
+    const auto hovers = [&](const FlightMoment& s) {
+      return s.flaps && moments_.carries(s) && (options_.allow_extrapolation || s.domain.none());
     };
 
     // Errors are a part of what a whole discharge gives at the first moment's rates.
@@ -390,8 +356,8 @@ class Flight {
       result_.end = *end;
       return;
     }
-    const bool weighed = std::isfinite(steady_.reporting.mass);
-    if (weighed) result_.hover = hovers(start) ? Hover::kept : lifts(start) ? Hover::outside : Hover::never;
+    const bool weighed = moments_.weighed();
+    if (weighed) result_.hover = hovers(start) ? Hover::kept : moments_.carries(start) ? Hover::outside : Hover::never;
     result_.end = EnduranceEnd::empty;
     const std::vector<double> charges = grid(0.0);
     for (std::size_t n = 1; n < charges.size(); ++n) {
@@ -399,12 +365,12 @@ class Flight {
       while (drawn < end) {
         const auto step = path.advance(drawn, y, end);
         if (!step) {
-          result_.end = EnduranceEnd::stops;
+          result_.end = moments_.throttled() ? EnduranceEnd::sinks : EnduranceEnd::stops;
           return end_here(row_at(drawn, y, state_at(drawn, y)));
         }
         const double length = step->first;
         const Path next = step->second;
-        const State state = state_at(drawn + length, next);
+        const FlightMoment state = state_at(drawn + length, next);
         // The last moment of this step at which something still holds: its row.
         const auto last_row = [&](const auto& holds) {
           EnduranceRow row_there = result_.rows.back();
@@ -412,7 +378,7 @@ class Flight {
               [&](double h) {
                 const auto part = path.take(drawn, y, h);
                 if (!part) return false;
-                const State s = state_at(drawn + h, part->y);
+                const FlightMoment s = state_at(drawn + h, part->y);
                 const bool still = holds(s, drawn + h);
                 if (still) row_there = row_at(drawn + h, part->y, s);
                 return still;
@@ -422,13 +388,14 @@ class Flight {
         };
         if (result_.hover == Hover::kept && !hovers(state)) {
           result_.hover = Hover::lost;
-          result_.hover_lost = last_row([&](const State& s, double) { return hovers(s); });
+          result_.hover_lost = last_row([&](const FlightMoment& s, double) { return hovers(s); });
           end_here(*result_.hover_lost);
         }
         if (const auto why = end_at(state, std::max(first - drawn - length, 0.0))) {
           result_.end = *why;
-          return end_here(last_row(
-              [&](const State& s, double drawn_there) { return !end_at(s, std::max(first - drawn_there, 0.0)); }));
+          return end_here(last_row([&](const FlightMoment& s, double drawn_there) {
+            return !end_at(s, std::max(first - drawn_there, 0.0));
+          }));
         }
         drawn = length < end - drawn ? drawn + length : end;
         y = next;
@@ -443,13 +410,10 @@ class Flight {
   }
 
   Battery<double> battery_;
-  bool bridged_;
   EnduranceOptions options_;
-  Vehicle<double> vehicle_;
+  FlightMoments moments_;
   std::optional<double> winding_time_, case_time_;  ///< tau_w, tau_c [s]
-  SteadyOptions steady_;
-  std::optional<State> on_bridge_;  ///< the same at any charge: the bridge holds its amplitude
-  std::map<double, State> known_;
+  std::map<double, FlightMoment> known_;
   std::vector<Piece> pieces_;  ///< in the order of voltages
   EnduranceResult result_;
 };

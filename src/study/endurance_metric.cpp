@@ -14,12 +14,13 @@ EnduranceOptions flight_options(Condition condition, double tolerance, bool allo
   return {.condition = condition,
           .tolerance = std::clamp(tolerance, 1e-10, 1e-2),
           .allow_extrapolation = allow_extrapolation,
-          .intervals = 16};
+          .intervals = 16,
+          .climb_margin = false};
 }
 
-/// Without a mass where hover is not wanted, so that its loss is not looked for.
+/// Without a mass where hover is not wanted, so that its loss is not looked for; a throttle needs it.
 EnduranceResult flight_of(Design<double> design, Condition condition, double tolerance, const FlightMetrics& wanted) {
-  if (!wanted.hover) design.mass.reset();
+  if (!wanted.hover && design.supply.throttle == Throttle::fixed) design.mass.reset();
   return simulate_discharge(design, flight_options(condition, tolerance, wanted.allow_extrapolation));
 }
 
@@ -138,7 +139,7 @@ class FlightGradient {
 };
 
 /// By differences, where the flight ends at a fold of the orbits or its temperatures are states, where hover ends by
-/// leaving the domain, and for a bridge, on which a flight is one orbit.
+/// leaving the domain, under a speed control, and for a bridge, on which a flight is one orbit.
 std::vector<double> by_differences(const Design<double>& design, Condition condition, double tolerance,
                                    std::span<const DesignParameter> parameters, const FlightMetrics& wanted) {
   std::vector<double> result;
@@ -176,11 +177,14 @@ Endurance endurance_of(const Design<double>& design, Condition condition, double
   if (parameters.empty()) return result;
 
   const bool warms_up = design.motor.thermal.resistance_winding && design.motor.thermal.time_constant_winding;
-  const bool one_orbit = design.supply.type == SupplyType::battery_sine;
+  const Supply<double>& supply = design.supply;
+  const bool one_orbit = supply.type == SupplyType::battery_sine;
+  const bool controlled = supply.throttle == Throttle::hover || supply.duty < 1.0;
   const FlightGradient gradient(design, condition, tolerance, parameters);
   const auto derivatives = [&](double time, double s_end, std::optional<FlightEvent> event, FlightMetrics metric) {
     if (!(time > 0.0)) return std::vector<double>(parameters.size(), absent);
-    if (one_orbit || warms_up || !event) return by_differences(design, condition, tolerance, parameters, metric);
+    if (one_orbit || controlled || warms_up || !event)
+      return by_differences(design, condition, tolerance, parameters, metric);
     const EnduranceRow& first = flight.rows.front();
     return gradient.of_time(time, first.charge, first.metrics[Metric::current_mean], s_end, *event);
   };

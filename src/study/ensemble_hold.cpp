@@ -88,6 +88,30 @@ EnsembleSearch search_frequency(const Vehicle<double>& v, std::size_t member, do
   return s;
 }
 
+EnsembleSearch search_power(const Vehicle<double>& v, std::size_t member, double power) {
+  const EvenTurn turn(v);
+  const double K = v.motor.torque_constant, R = circuit_resistance(v);
+  const auto power_at = [&](double omega) {
+    const double voltage = turn.voltage(omega);
+    return voltage * (voltage - K * omega) / R;
+  };
+  double low = 1e-3 * std::sqrt(power * R) / K, high = low;
+  while (power_at(high) < power && high < 1e12) high *= 2.0;
+  for (int round = 0; round < 30; ++round) {
+    const double middle = 0.5 * (low + high);
+    (power_at(middle) < power ? low : high) = middle;
+  }
+  EnsembleSearch s;
+  s.member = member;
+  s.target = power;
+  s.next = turn.voltage(high);
+  const double faster = slope_step * high;
+  s.usual_slope = std::log(power_at(faster) / power_at(high)) / std::log(turn.voltage(faster) / s.next);
+  if (!(s.usual_slope > 1.0 && s.usual_slope < 4.0)) s.usual_slope = 2.5;
+  s.limit = frequency_search_span * s.next;
+  return s;
+}
+
 EnsembleSearch search_lift(const Vehicle<double>& v, std::size_t member, double lift) {
   const EvenTurn turn(v);
   double omega = std::sqrt(2.0 * lift / (v.wings.air_density * v.wings.s2)) / turn.steepest();
@@ -215,7 +239,8 @@ class HeldEnsemble {
                const StartUp& start_up, std::span<EnsembleOutcome> outcomes, std::span<FrequencyOutcome> reached)
       : members_(members),
         holds_(holds),
-        holds_lift_(!holds.empty() && holds.front().held != Held::frequency),
+        holds_lift_(!holds.empty() && is_lift(holds.front().held)),
+        holds_power_(!holds.empty() && holds.front().held == Held::power),
         options_(options),
         start_up_(start_up),
         outcomes_(outcomes),
@@ -242,6 +267,10 @@ class HeldEnsemble {
         } else {
           left_.push_back(n);
         }
+      } else if (holds_power_) {
+        const bool turns = drive_of(vehicle).voltage_sets_frequency && circuit_resistance(vehicle) > 0.0;
+        if (turns) searches_.push_back(search_power(vehicle, n, hold.value));
+        else left_.push_back(n);
       } else if (!drive_of(vehicle).voltage_sets_frequency) {
         vehicle.drive_frequency = hold.value;
         settled_.push_back(n);
@@ -253,7 +282,9 @@ class HeldEnsemble {
     }
   }
 
-  Metric sought() const { return holds_lift_ ? Metric::lift_mean : Metric::frequency; }
+  Metric sought() const {
+    return holds_lift_ ? Metric::lift_mean : holds_power_ ? Metric::power_electrical : Metric::frequency;
+  }
 
   /// Those wanted, and those by which a lift is assessed.
   MetricSet assessed_metrics(MetricSet wanted) const {
@@ -283,7 +314,7 @@ class HeldEnsemble {
       trials_.clear();
       for (const EnsembleSearch& s : some) {
         trials_.push_back(members_[s.member]);
-        trials_.back().vehicle.voltage = s.next;
+        set_mean_voltage(trials_.back().vehicle, s.next);
       }
       results_.resize(some.size());
       solve_ensemble(trials_, options, start_up_, results_);
@@ -311,8 +342,12 @@ class HeldEnsemble {
       left_.push_back(s.member);  // a lower voltage may yield it, too
       return false;
     }
+    if (is_answer && s.next > holds_[s.member].highest_voltage) {
+      refuse(s.member, FrequencyOutcome::too_high, FlappingStatus::flapping, result.scalar);
+      return false;
+    }
     if (is_answer) {
-      members_[s.member].vehicle.voltage = s.next;
+      set_mean_voltage(members_[s.member].vehicle, s.next);
       if (holds_lift_ && is_beyond_coefficients(v, result.metrics) && in_range_of_coefficients(s.member)) {
         refuse(s.member, FrequencyOutcome::outside_domain, FlappingStatus::flapping, result.scalar);
       } else {
@@ -399,7 +434,7 @@ class HeldEnsemble {
     steady.reporting = members_[n].reporting;
     const FrequencySearch found = find_voltage(members_[n].vehicle, holds_[n], steady, start_up_);
     if (found.outcome != FrequencyOutcome::reached) refuse(n, found.outcome, found.status, true);
-    else members_[n].vehicle.voltage = found.voltage;
+    else set_mean_voltage(members_[n].vehicle, found.voltage);
     return found.outcome == FrequencyOutcome::reached;
   }
 
@@ -410,14 +445,14 @@ class HeldEnsemble {
     results_.resize(settled_.size());
     solve_ensemble(trials_, options_, start_up_, results_);
     for (std::size_t k = 0; k < settled_.size(); ++k) {
-      if (drive_of(trials_[k].vehicle).voltage_sets_frequency || holds_lift_) results_[k].scalar = true;
+      if (drive_of(trials_[k].vehicle).voltage_sets_frequency || holds_lift_ || holds_power_) results_[k].scalar = true;
       reach(settled_[k], results_[k]);
     }
   }
 
   std::span<EnsembleMember> members_;
   std::span<const Hold> holds_;
-  bool holds_lift_;  ///< else a frequency
+  bool holds_lift_, holds_power_;  ///< else a frequency
   const EnsembleOptions& options_;
   const StartUp& start_up_;
   std::span<EnsembleOutcome> outcomes_;
@@ -436,10 +471,12 @@ void solve_ensemble_held(std::span<EnsembleMember> members, std::span<const Hold
                          std::span<FrequencyOutcome> reached) {
   for (std::size_t n = 0; n < members.size(); ++n) {
     const Hold& h = holds[n];
-    require((h.held == Held::frequency) == (holds[0].held == Held::frequency), "hold",
-            "must be a frequency of all or a lift of all", "", h.value);
-    if (h.held == Held::frequency) {
-      require(h.value > 0.0 && std::isfinite(h.value), "frequency", "must be > 0 and finite", "Hz", h.value);
+    require(h.held == holds[0].held || (is_lift(h.held) && is_lift(holds[0].held)), "hold",
+            "must be a frequency of all, a lift of all or a power of all", "", h.value);
+    if (!is_lift(h.held)) {
+      const bool power = h.held == Held::power;
+      require(h.value > 0.0 && std::isfinite(h.value), power ? "power" : "frequency", "must be > 0 and finite",
+              power ? "W" : "Hz", h.value);
       continue;
     }
     const double lift = held_lift(h, members[n].reporting);

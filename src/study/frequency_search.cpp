@@ -7,6 +7,8 @@
 
 #include "study/voltage_trials.hpp"
 #include "wingbeat/core/root.hpp"
+#include "wingbeat/cycle/static_balance.hpp"
+#include "wingbeat/vehicle/motion.hpp"
 
 namespace wingbeat {
 namespace {
@@ -15,8 +17,6 @@ using detail::VoltageTrial;
 using detail::VoltageTrials;
 using Finding = SearchFinding::Kind;
 using VoltagePoint = SearchFinding::VoltagePoint;
-
-VoltagePoint frequency_at(const VoltageTrial& t) { return {t.voltage, t.frequency}; }
 
 /// Widest bracket of the lowest voltage at which a vehicle flaps, relative.
 constexpr double onset_width = 1e-5;
@@ -28,18 +28,20 @@ constexpr double border_width = 1e-4;
 
 class Search {
  public:
-  Search(VoltageTrials trials, double target) : trials_(std::move(trials)), target_(target) {}
+  Search(VoltageTrials trials, double target, Sought sought)
+      : trials_(std::move(trials)), target_(target), sought_(sought) {}
 
-  /// `unloaded` turns the motor at the wanted frequency without load. Only a load that drives the motor needs less.
-  FrequencySearch run(double unloaded) {
-    const double lowest = unloaded / frequency_search_span, highest = unloaded * frequency_search_span;
-    double voltage = unloaded;
+  /// `unloaded` turns the motor at the wanted frequency without load. Only a load that drives the motor needs less. Of
+  /// a power it is the voltage that standstill takes it at, which is less than any that flaps.
+  FrequencySearch run(double unloaded, double highest) {
+    const double lowest = std::min(unloaded / frequency_search_span, highest);
+    double voltage = std::min(unloaded, highest);
     for (int n = 0; n < 200; ++n) {
       const VoltageTrial trial = trials_.at(voltage);
       if (trial.flaps) follow(trial);
-      if (trial.flaps && std::abs(trial.frequency / target_ - 1.0) <= trials_.closeness()) return reached(trial);
+      if (trial.flaps && std::abs(value_of(trial) / target_ - 1.0) <= trials_.closeness()) return reached(trial);
       if (trial.flaps && trial.inside && (!inside_ || trial.voltage > inside_->voltage)) inside_ = trial;
-      if (trial.flaps && trial.frequency >= target_) {
+      if (trial.flaps && value_of(trial) >= target_) {
         before_high_ = high_;
         high_ = trial;
       } else if (!trial.flaps && low_flaps() && high_ && width() < jump_width * high_->voltage) {
@@ -57,14 +59,17 @@ class Search {
   }
 
  private:
+  double value_of(const VoltageTrial& t) const { return sought_ == Sought::power ? t.power : t.frequency; }
+  VoltagePoint point_at(const VoltageTrial& t) const { return {t.voltage, value_of(t)}; }
+
   /// The slope between the last two trials: a frequency is so nearly proportional to the voltage that this takes one
   /// trial more than an exact slope, at half the cost each.
   void follow(const VoltageTrial& t) {
-    const double x = std::log(t.voltage), y = std::log(t.frequency);
+    const double x = std::log(t.voltage), y = std::log(value_of(t));
     const double slope = (y - last_y_) / (x - last_x_);
     // A slope of more is that of a vehicle that has hardly started to flap, if it is not that of a jump past the
     // target.
-    const bool one_side = (t.frequency < target_) == (last_y_ < std::log(target_));
+    const bool one_side = (value_of(t) < target_) == (last_y_ < std::log(target_));
     const double steepest = low_flaps() && high_ && one_side ? 1e4 : 10.0;
     if (std::abs(y - last_y_) > 10.0 * trials_.accuracy() && slope > 0.1 && slope < steepest) slope_ = slope;
     last_x_ = x;
@@ -82,8 +87,8 @@ class Search {
     if (!(width() < jump_width * high_->voltage)) return false;
     const auto reaches = [&](const std::optional<VoltageTrial>& far, const VoltageTrial& near, double end) {
       if (!far || !far->flaps) return true;
-      const double secant = std::abs((near.frequency - far->frequency) / (near.voltage - far->voltage));
-      return std::abs(target_ - near.frequency) <=
+      const double secant = std::abs((value_of(near) - value_of(*far)) / (near.voltage - far->voltage));
+      return std::abs(target_ - value_of(near)) <=
              4.0 * secant * std::abs(end - far->voltage) + 100.0 * trials_.accuracy() * target_;
     };
     return !reaches(before_low_, *low_, high_->voltage) && !reaches(before_high_, *high_, low_->voltage);
@@ -102,7 +107,7 @@ class Search {
     if (jumps_between()) return jumps();
     if (width() > 4e-16 * high_->voltage) return std::nullopt;
     // At the last bits of the voltage a smooth frequency is as close as its own rounding allows.
-    const double gap = high_->frequency - low_->frequency;
+    const double gap = value_of(*high_) - value_of(*low_);
     if (gap < (10.0 * trials_.accuracy() + 2.0 * trials_.closeness()) * target_) return reached(*high_);
     return jumps();
   }
@@ -120,15 +125,15 @@ class Search {
     const double middle = 0.5 * (low_->voltage + high_->voltage);
     if (slow) stuck_ = !stuck_;
     if (slow && stuck_) return middle;
-    const VoltageTrial& from = target_ - low_->frequency < high_->frequency - target_ ? *low_ : *high_;
+    const VoltageTrial& from = target_ - value_of(*low_) < value_of(*high_) - target_ ? *low_ : *high_;
     const double guess = secant(from, 4.0);
     return guess > low_->voltage && guess < high_->voltage ? guess : middle;
   }
 
-  /// The secant's step in the logarithms of frequency and voltage; somewhat further outside a bracket, so that one is
+  /// The secant's step in the logarithms of value and voltage; somewhat further outside a bracket, so that one is
   /// found soon, and twice as far where the trial's own error counts.
   double secant(const VoltageTrial& t, double max_ratio) const {
-    const double gap = std::log(target_ / t.frequency);
+    const double gap = std::log(target_ / value_of(t));
     double step = gap / slope_;
     if (!(low_ && high_)) step *= std::abs(gap) < 100.0 * trials_.accuracy() ? 2.0 : 1.0 + 0.1 * std::abs(step);
     return t.voltage * std::clamp(std::exp(step), 1.0 / max_ratio, max_ratio);
@@ -137,7 +142,7 @@ class Search {
   /// The trial flaps outside the range, no faster than wanted: how fast does it flap inside?
   FrequencySearch outside_domain(const VoltageTrial& trial) {
     SearchFinding finding = found(Finding::out_of_range);
-    finding.point = frequency_at(trial);
+    finding.point = point_at(trial);
     finding.limits = trial.limits;
     VoltageTrial outside = trial;
     for (int n = 0; n < 40 && !(inside_ && inside_->voltage < outside.voltage); ++n) {
@@ -166,7 +171,7 @@ class Search {
     };
     find_zero(margin_at, inside.voltage, margin(inside), outside.voltage, margin(outside),
               border_width * outside.voltage);
-    finding.max_point = frequency_at(inside);
+    finding.max_point = point_at(inside);
     return conclude(FrequencyOutcome::outside_domain, inside, finding);
   }
 
@@ -179,8 +184,8 @@ class Search {
   }
   FrequencySearch jumps() {
     SearchFinding finding = found(Finding::jumps);
-    finding.point = frequency_at(*high_);
-    finding.min_point = frequency_at(*low_);
+    finding.point = point_at(*high_);
+    finding.min_point = point_at(*low_);
     return conclude(FrequencyOutcome::jumps, *high_, finding);
   }
   FrequencySearch never_flaps() {
@@ -193,12 +198,12 @@ class Search {
   FrequencySearch too_high() {
     SearchFinding finding = found(Finding::too_high);
     finding.last_voltage = (ceiling_ ? *ceiling_ : *low_).voltage;
-    finding.max_point = frequency_at(*low_);
+    finding.max_point = point_at(*low_);
     return conclude(FrequencyOutcome::too_high, *low_, finding);
   }
   FrequencySearch too_low() {
     SearchFinding finding = found(low_ ? Finding::too_low_at_onset : Finding::too_low_at_first);
-    finding.point = frequency_at(*high_);
+    finding.point = point_at(*high_);
     if (low_) {
       finding.status = low_->status;
       finding.evidence = low_->evidence;
@@ -208,23 +213,24 @@ class Search {
     return result;
   }
   SearchFinding found(Finding kind) const {
-    return {.kind = kind, .sought = Sought::frequency, .target = target_, .range = trials_.range()};
+    return {.kind = kind, .sought = sought_, .target = target_, .range = trials_.range()};
   }
   FrequencySearch conclude(FrequencyOutcome outcome, const VoltageTrial& closest, const SearchFinding& finding) const {
     return {outcome,          absent,          closest.status,
             finding,          trials_.count(), closest.flaps ? closest.voltage : absent,
-            closest.frequency};
+            value_of(closest)};
   }
 
   VoltageTrials trials_;
   double target_;
+  Sought sought_;
   std::optional<VoltageTrial> low_;                       ///< slower than wanted, or not flapping
   std::optional<VoltageTrial> high_;                      ///< faster
   std::optional<VoltageTrial> before_low_, before_high_;  ///< what low_ and high_ were before
   std::optional<VoltageTrial> inside_;                    ///< highest voltage known to be inside the range
   std::optional<VoltageTrial> ceiling_;                   ///< not flapping, above a low_ that flaps
-  double last_x_ = absent, last_y_ = absent;              ///< logarithms of the last trial's voltage and frequency
-  double slope_ = 1.0;                                    ///< d ln f / d ln v
+  double last_x_ = absent, last_y_ = absent;              ///< logarithms of the last trial's voltage and value
+  double slope_ = 1.0;                                    ///< d ln value / d ln v
   double bracket_ = std::numeric_limits<double>::infinity();
   bool stuck_ = false;
 };
@@ -274,11 +280,30 @@ FrequencySearch refuse_frequency(const Vehicle<double>& vehicle, double frequenc
 }
 
 FrequencySearch find_voltage_for_frequency(const Vehicle<double>& vehicle, double frequency,
-                                           const SteadyOptions& options, const StartUp& start_up, SearchRange range) {
+                                           const SteadyOptions& options, const StartUp& start_up, SearchRange range,
+                                           double highest_voltage) {
   require(frequency > 0.0 && std::isfinite(frequency), "frequency", "must be > 0 and finite", "Hz", frequency);
   if (frequency > highest_frequency(vehicle, range)) return refuse_frequency(vehicle, frequency, range);
   const double unloaded = detail::unloaded_voltage(vehicle, two_pi * frequency, vehicle.motor.friction_torque);
-  return Search(VoltageTrials(vehicle, options, start_up, range, false), frequency).run(unloaded);
+  return Search(VoltageTrials(vehicle, options, start_up, range, false), frequency, Sought::frequency)
+      .run(unloaded, std::min(unloaded * frequency_search_span, highest_voltage));
+}
+
+FrequencySearch find_voltage_for_power(const Vehicle<double>& vehicle, double power, const SteadyOptions& options,
+                                       const StartUp& start_up, SearchRange range, double highest_voltage) {
+  require(power > 0.0 && std::isfinite(power), "power", "must be > 0 and finite", "W", power);
+  // A piezo has no resistance of its own.
+  const double R = circuit_resistance(vehicle), usual = vehicle.voltage > 0.0 ? vehicle.voltage : 1.0;
+  const double standing = R > 0.0 ? std::sqrt(power * R) : usual;
+  double highest = frequency_search_span * std::max(standing, usual);
+  if (drive_of(vehicle).rotates) {
+    // Whatever starts the crank from any angle, so that a power too small to do so is known for that.
+    const StaticBalance balance = static_balance(vehicle);
+    const double start = (balance.stall_torque - balance.advance_min) * R / vehicle.motor.torque_constant;
+    highest = std::max(highest, 10.0 * start);
+  }
+  return Search(VoltageTrials(vehicle, options, start_up, range, false), power, Sought::power)
+      .run(standing, std::min(highest, highest_voltage));
 }
 
 }  // namespace wingbeat

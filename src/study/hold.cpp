@@ -1,5 +1,7 @@
 #include "wingbeat/study/hold.hpp"
 
+#include <algorithm>
+
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
@@ -10,11 +12,38 @@ double held_lift(const Hold& hold, const Reporting& reporting) {
   return hold.held == Held::lift_to_weight ? hold.value * reporting.mass * standard_gravity : absent;
 }
 
+void set_full_duty(Supply<double>& supply) {
+  if (supply.type == SupplyType::battery) supply.duty = 1.0;
+}
+
+double highest_voltage(const Supply<double>& supply) {
+  return has_battery(supply.type) ? open_circuit_voltage(supply.battery, supply.battery.charge) : HUGE_VAL;
+}
+
+void set_found(Supply<double>& supply, const Metrics<double>& found) {
+  const double voltage = found[Metric::voltage];
+  if (supply.type == SupplyType::battery) {
+    const double E = open_circuit_voltage(supply.battery, supply.battery.charge);
+    const double sag = source_resistance(supply.battery) * found[Metric::current_mean];
+    supply.duty = std::min(2.0 * voltage / (E + std::sqrt(std::max(square(E) - 4.0 * sag * voltage, 0.0))), 1.0);
+  } else {
+    supply.voltage = supply.type == SupplyType::pwm ? voltage / supply.duty : voltage;
+  }
+}
+
 FrequencySearch find_voltage(const Vehicle<double>& vehicle, const Hold& hold, const SteadyOptions& options,
                              const StartUp& start_up) {
-  if (hold.held == Held::frequency) return find_voltage_for_frequency(vehicle, hold.value, options, start_up);
+  if (hold.held == Held::frequency) {
+    return find_voltage_for_frequency(vehicle, hold.value, options, start_up, SearchRange::extrapolation,
+                                      hold.highest_voltage);
+  }
+  if (hold.held == Held::power) {
+    return find_voltage_for_power(vehicle, hold.value, options, start_up, SearchRange::extrapolation,
+                                  hold.highest_voltage);
+  }
   LiftSearchOptions where;
   where.range = hold.range;
+  where.highest_voltage = hold.highest_voltage;
   if (vehicle.voltage > 0.0) where.nominal = vehicle.voltage;
   return find_voltage_for_lift(vehicle, held_lift(hold, options.reporting), options, start_up, where);
 }

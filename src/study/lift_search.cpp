@@ -47,8 +47,8 @@ class LiftTrace {
 
   FrequencySearch run() {
     const double guess = first_voltage();
-    limit_ = highest_voltage(guess);
-    VoltageTrial a = at(0.5 * guess);
+    limit_ = std::min(highest_voltage(guess), where_.highest_voltage);
+    VoltageTrial a = at(std::min(0.5 * guess, limit_));
     // Down to where no peak can lie below.
     for (int n = 0; n < 60 && a.flaps && !(a.lift < target_ && a.pitching < step_deg_); ++n) a = at(0.5 * a.voltage);
     int still = 0;

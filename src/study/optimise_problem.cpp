@@ -28,8 +28,7 @@ Design<double> OptimiseProblem::found(const Vector& u, const DesignPoint& point)
   Design<double> d = design(u);
   const std::optional<Hold>& hold = study_.options.hold;
   if (hold && !(hold->held == Held::frequency && set_drive_frequency(d, hold->value))) {
-    const double duty = d.supply.type == SupplyType::pwm ? d.supply.duty : 1.0;
-    d.supply.voltage = point.metrics[Metric::voltage] / duty;
+    set_found(d.supply, point.metrics);
   }
   return d;
 }

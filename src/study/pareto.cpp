@@ -224,9 +224,7 @@ ObjectivePoint reference_of(const ParetoStudy& study, const Problem& problem, co
 
 Design<double> vehicle_of(const ParetoStudy& study, const ParetoDesign& design) {
   Design<double> v = Problem(study, {}, {}).vehicle(design);
-  if (study.hold) {
-    v.supply.voltage = design.metrics[Metric::voltage] / (v.supply.type == SupplyType::pwm ? v.supply.duty : 1.0);
-  }
+  if (study.hold) set_found(v.supply, design.metrics);
   return v;
 }
 

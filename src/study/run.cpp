@@ -6,6 +6,7 @@
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/study/endurance.hpp"
+#include "wingbeat/study/hold.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 
 namespace wingbeat {
@@ -17,18 +18,17 @@ using detail::format;
 
 /// Refuses a supply whose voltage cannot be chosen: `wanted` depends on it.
 void require_choice_of_voltage(const Supply<double>& supply, const char* wanted, bool lift) {
-  const char* why = nullptr;
-  if (supply.type == SupplyType::sine) why = "a sine supply has no voltage that sets the %s";
-  if (supply.type == SupplyType::battery)
-    why = "the charge of a battery gives its voltage, so none can be chosen for the %s";
-  if (why) throw ParameterError("supply.type", format(why, wanted));
+  if (supply.type == SupplyType::sine) {
+    throw ParameterError("supply.type", format("a sine supply has no voltage that sets the %s", wanted));
+  }
   if (supply.type == SupplyType::pwm && !(supply.duty > 0.0) && !lift) {
     throw ParameterError("supply.duty", format("is 0: no voltage reaches the motor, so none sets the %s", wanted));
   }
 }
 
 void set_voltage(Supply<double>& supply, double voltage) {
-  supply.voltage = supply.type == SupplyType::pwm ? voltage / supply.duty : voltage;
+  if (supply.type == SupplyType::battery) supply.duty = voltage / highest_voltage(supply);
+  else supply.voltage = supply.type == SupplyType::pwm ? voltage / supply.duty : voltage;
 }
 
 void set_duty(Supply<double>& supply, double mean, double lift) {
@@ -46,16 +46,24 @@ FrequencySearch find_voltage(const Vehicle<double>& vehicle, const Supply<double
   SteadyOptions steady;
   steady.tolerance = options.tolerance;
   const SearchRange range = options.allow_extrapolation ? SearchRange::extrapolation : SearchRange::domain;
-  if (!options.lift) {
-    return find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up_in_time(), range);
+  const double highest = highest_voltage(supply);
+  FrequencySearch search;
+  if (options.lift) {
+    LiftSearchOptions where;
+    where.range = range;
+    where.highest_voltage = highest;
+    const double usual = has_battery(supply.type) ? highest : supply.voltage;
+    if (usual > 0.0) where.nominal = usual;
+    search = find_voltage_for_lift(vehicle, *options.lift, steady, start_up_in_time(), where);
+  } else if (options.power) {
+    search = find_voltage_for_power(vehicle, *options.power, steady, start_up_in_time(), range, highest);
+  } else {
+    search = find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up_in_time(), range, highest);
   }
-  LiftSearchOptions where;
-  where.range = range;
-  if (supply.voltage > 0.0) where.nominal = supply.voltage;
-  FrequencySearch search = find_voltage_for_lift(vehicle, *options.lift, steady, start_up_in_time(), where);
-  if (supply.type == SupplyType::pwm && search.closest_voltage > supply.voltage) {
-    search.finding.full_duty_voltage = supply.voltage;
-  }
+  const bool needs_more = supply.type == SupplyType::pwm && options.lift && search.closest_voltage > supply.voltage;
+  const bool needs_all = supply.type == SupplyType::battery && search.outcome == FrequencyOutcome::too_high;
+  if (needs_more) search.finding.full_duty_voltage = supply.voltage;
+  if (needs_all) search.finding.full_duty_voltage = highest;
   return search;
 }
 
@@ -140,6 +148,12 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   const Drive drive = drive_of(design);
   require(!(options.frequency && options.lift), "lift", "cannot be asked for beside a frequency", "N",
           options.lift.value_or(0.0));
+  require(!(options.power && (options.frequency || options.lift)), "power",
+          "cannot be asked for beside a frequency or a lift", "W", options.power.value_or(0.0));
+  if (options.power) {
+    require(*options.power > 0.0 && std::isfinite(*options.power), "power", "must be > 0 and finite", "W",
+            *options.power);
+  }
   if (options.frequency) {
     require(*options.frequency > 0.0 && std::isfinite(*options.frequency), "frequency", "must be > 0 and finite", "Hz",
             *options.frequency);
@@ -148,6 +162,7 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
     require(*options.lift > 0.0 && std::isfinite(*options.lift), "lift", "must be > 0 and finite", "N", *options.lift);
   }
   if (options.frequency && drive.voltage_sets_frequency) require_choice_of_voltage(supply, "flapping frequency", false);
+  if (options.power && !drive.alternating) require_choice_of_voltage(supply, "electrical power", false);
   if (options.lift && !drive.alternating) require_choice_of_voltage(supply, "lift", true);
   if (supply.type == SupplyType::sine && !drive.alternating && options.method == Method::orbit) {
     throw ParameterError("supply.type",
@@ -158,8 +173,9 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   result.metrics.values.fill(absent);
   result.design = design;
   const bool driven = options.frequency && set_drive_frequency(result.design, *options.frequency);
+  if (options.frequency || options.lift || options.power) set_full_duty(result.design.supply);
   Vehicle<double> vehicle = resolve(result.design, options.condition);
-  if ((options.frequency && !driven) || options.lift) {
+  if ((options.frequency && !driven) || options.lift || options.power) {
     result.search = find_voltage(vehicle, supply, options);
     if (result.search->outcome != FrequencyOutcome::reached) {
       result.status = result.search->status;
@@ -172,7 +188,7 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
       set_voltage(result.design.supply, result.search->voltage);
     }
     if (supply.type == SupplyType::battery_sine) validate(result.design);  // its amplitude may not exceed the battery's
-    vehicle.voltage = result.search->voltage;
+    set_mean_voltage(vehicle, result.search->voltage);
   }
   if (options.method == Method::orbit) {
     run_orbit(vehicle, options, result);

@@ -24,6 +24,10 @@ std::optional<Hold> set_numbers(const Sweep& sweep, std::span<const std::uint64_
   }
   if (!variant.springs) variant.design.spring = {};
   if (hold && hold->held == Held::frequency) set_drive_frequency(variant.design, hold->value);
+  if (hold) {
+    set_full_duty(variant.design.supply);
+    hold->highest_voltage = highest_voltage(variant.design.supply);
+  }
   return hold;
 }
 

@@ -45,7 +45,7 @@ SteadyFlapping VoltageTrials::solve() const {
 
 VoltageTrial VoltageTrials::at(double voltage) {
   ++count_;
-  vehicle_.voltage = voltage;
+  set_mean_voltage(vehicle_, voltage);
   const SteadyFlapping found = solve();
   VoltageTrial trial;
   trial.voltage = voltage;
@@ -56,6 +56,7 @@ VoltageTrial VoltageTrials::at(double voltage) {
 
   const Metrics<double>& m = found.metrics;
   trial.frequency = m[Metric::frequency];
+  trial.power = m[Metric::power_electrical];
   trial.lift = m[Metric::lift_mean];
   trial.lift_peak = m[Metric::lift_peak];
   trial.pitching = 90.0 - m[Metric::angle_of_attack_min];
@@ -66,8 +67,9 @@ VoltageTrial VoltageTrials::at(double voltage) {
     GradientVehicle seeded{cast<GradientJet>(vehicle_)};
     const bool has_slot = drive_of(vehicle_).voltage_sets_frequency;  // of its own, for the voltage
     if (!has_slot) seeded.vehicle.voltage = gradient_seed(voltage, 0);
-    const OrbitGradient g = orbit_gradient(found, seeded, {.peaks = false});
     const int slot = has_slot ? gradient_voltage_slot : gradient_first_slot;
+    seeded.vehicle.source_resistance.v[slot] = 2.0 * vehicle_.source_resistance / voltage;
+    const OrbitGradient g = orbit_gradient(found, seeded, {.peaks = false});
     const double f_slope = g.metrics[Metric::frequency].v[slot], lift_slope = g.metrics[Metric::lift_mean].v[slot];
     trial.exact = g.regular && std::isfinite(f_slope) && std::isfinite(lift_slope);
     if (trial.exact) {

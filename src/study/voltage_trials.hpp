@@ -16,6 +16,7 @@ struct VoltageTrial {
   FlappingStatus status = FlappingStatus::stalled;
   StatusEvidence evidence;
   double frequency = absent;           ///< [Hz]
+  double power = absent;               ///< mean electrical [W]
   bool exact = false;                  ///< both slopes; else 1 and 0 stand for them
   double frequency_slope = absent;     ///< d ln f / d ln v
   double lift = absent;                ///< mean [N]

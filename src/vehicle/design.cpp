@@ -179,6 +179,9 @@ void validate(const Design<double>& d) {
                            "gives the mass of the battery, which supply.mass states; give one of them");
     }
   }
+  if (has_battery(d.supply.type) && d.supply.throttle == Throttle::hover && !d.mass) {
+    throw ParameterError("supply.throttle", "hover needs vehicle.mass, the weight to be carried");
+  }
   if (d.supply.type == SupplyType::battery_sine) validate_bridge(d);
   if (d.piezo.force_per_volt) validate_piezo(d);
   else if (d.electronics.efficiency) validate_electronics(d);

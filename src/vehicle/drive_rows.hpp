@@ -16,7 +16,7 @@ constexpr auto drive_rows() {
   using Powered = SupplyIs<SupplyType::constant, SupplyType::pwm>;
   using Sine = SupplyIs<SupplyType::sine, SupplyType::battery_sine>;
   using Periodic = SupplyIs<SupplyType::sine, SupplyType::pwm, SupplyType::battery_sine>;
-  using Pwm = SupplyIs<SupplyType::pwm>;
+  using Switched = SupplyIs<SupplyType::pwm, SupplyType::battery>;
   using OnBattery = SupplyIs<SupplyType::battery, SupplyType::battery_sine>;
   using Direct = TransmissionIs<TransmissionType::direct>;
   constexpr auto drive_ratio = [](auto& d) -> auto& { return d.supply_resonance_ratio; };
@@ -57,8 +57,20 @@ constexpr auto drive_rows() {
                               "drives a direct drive at resonance",
                               {"frequency"}},
                              drive_ratio),
-      number<S, Pwm>(row(supply_key::duty, "required", "fraction of a period switched on"),
-                     [](auto& d) -> auto& { return d.supply.duty; }),
+      number<S, Switched>(row(supply_key::duty, "1",
+                              "D, fraction of a period switched on; required of pwm, on a battery the speed control's"),
+                          [](auto& d) -> auto& { return d.supply.duty; }),
+      text<S, OnBattery>(
+          {"supply.throttle",
+           "",
+           {wingbeat::listed_names<Throttle>()},
+           "fixed",
+           "what the speed control does in flight: fixed holds the duty (or a bridge's amplitude), hover "
+           "sets it so that the mean lift carries the weight"},
+          [](const D& d) {
+            if (!OnBattery::holds(d)) return std::string();
+            return std::string(name_of(d.supply.throttle));
+          }),
       number<S, OnBattery>(row(battery_key::cells, "1", "cells in series"),
                            [](auto& d) -> auto& { return d.supply.battery.cells; }),
       battery_voltage<S>(row(battery_key::cell_voltage, "required", "E, open-circuit voltage of one cell at any charge",

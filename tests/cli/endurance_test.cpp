@@ -33,11 +33,12 @@ TEST_F(Endurance, ReportJsonFigureAndDataSet) {
       run({"endurance", battery, "--set", "supply.cells=2", "--set", "vehicle.mass=5e-3", "--json"}).json();
   std::vector<std::string> keys;
   for (const auto& [key, value] : json.items()) keys.push_back(key);
-  EXPECT_THAT(keys, testing::ElementsAre(
-                        "status", "status_detail", "hover", "hover_s", "end", "endurance_s", "domain", "hover_lost",
-                        "charge_initial", "charge_final", "charge_drawn_c", "energy_chemical_j", "energy_electrical_j",
-                        "energy_internal_j", "energy_aerodynamic_j", "current_mean_a", "power_electrical_w",
-                        "power_aerodynamic_w", "lift_mean_n", "efficiency_system", "initial", "final", "history"));
+  EXPECT_THAT(
+      keys, testing::ElementsAre("status", "status_detail", "hover", "throttle", "hover_s", "lift_to_weight_full",
+                                 "end", "endurance_s", "domain", "hover_lost", "charge_initial", "charge_final",
+                                 "charge_drawn_c", "energy_chemical_j", "energy_electrical_j", "energy_internal_j",
+                                 "energy_aerodynamic_j", "current_mean_a", "power_electrical_w", "power_aerodynamic_w",
+                                 "lift_mean_n", "efficiency_system", "initial", "final", "history"));
   EXPECT_EQ(json["hover"], "lost");
   EXPECT_EQ(json["hover_s"], json["hover_lost"]["time_s"]);
   EXPECT_LT(json["hover_s"], json["endurance_s"]);
@@ -125,11 +126,51 @@ TEST_F(Endurance, RunOnABattery) {
   EXPECT_THAT(
       run({"run", battery, "--voltage", "3 V"}).err,
       HasSubstr("--voltage: the supply is a battery, whose charge gives its voltage; use --set supply.charge=0.5"));
+  const Json slower = run({"run", battery, "--frequency", "22 Hz", "--json"}).json();
+  EXPECT_NEAR(slower["frequency_hz"].get<double>(), 22.0, 1e-4);
+  EXPECT_LT(slower["supply_duty"].get<double>(), 1.0);
+  EXPECT_THAT(run({"run", battery, "--lift-to-weight", "1"}).err,
+              AllOf(HasSubstr("cannot be reached inside the domain of validity: it lifts 0.02106 N at most, at 4.2 V"),
+                    HasSubstr("; a duty of 1 gives 4.2 V")));
+}
+
+TEST_F(Endurance, HoversAtTheThrottleThatCarriesTheWeight) {
+  const std::vector<std::string> two_cells = {battery, "--set", "supply.cells=2", "--set", "vehicle.mass=5 g"};
+  const auto with = [&](std::initializer_list<std::string> first, std::initializer_list<std::string> last) {
+    std::vector<std::string> all(first);
+    all.insert(all.end(), two_cells.begin(), two_cells.end());
+    all.insert(all.end(), last);
+    return all;
+  };
+  const Json fixed = run(with({"endurance"}, {"--json"})).json();
+  const Json json = run(with({"endurance"}, {"--hover", "--json"})).json();
+  EXPECT_EQ(json["throttle"], "hover");
+  EXPECT_EQ(json["hover"], "kept");
+  EXPECT_EQ(json["end"], "sinks");
+  EXPECT_EQ(json["hover_s"], json["endurance_s"]);
+  // It gives no lift away, and ends where the fixed one has lost hover.
+  EXPECT_GT(json["hover_s"].get<double>(), fixed["hover_s"].get<double>());
+  EXPECT_NEAR(json["charge_final"].get<double>(), fixed["hover_lost"]["charge"].get<double>(), 1e-6);
+  const Json& history = json["history"];
+  EXPECT_NEAR(history["lift_to_weight_full"].front().get<double>(), fixed["initial"]["lift_to_weight"].get<double>(),
+              1e-6);
+  EXPECT_NEAR(history["lift_to_weight_full"].back().get<double>(), 1.0, 1e-6);
+  EXPECT_NEAR(history["duty"].back().get<double>(), 1.0, 1e-6);
+  EXPECT_EQ(history["domain_full"].size(), history["time_s"].size());
+  const Json run_there = run(with({"run"}, {"--lift-to-weight", "1", "--json"})).json();
+  EXPECT_NEAR(history["duty"].front().get<double>(), run_there["supply_duty"].get<double>(), 1e-6);
+
+  const std::string text = run(with({"endurance"}, {"--hover"})).out;
   EXPECT_THAT(
-      run({"run", battery, "--frequency", "22 Hz"}).err,
-      HasSubstr("supply.type: the charge of a battery gives its voltage, so none can be chosen for the flapping "
-                "frequency"));
-  EXPECT_THAT(run({"run", battery, "--lift", "20 mN"}).err, HasSubstr("so none can be chosen for the lift"));
+      text, AllOf(HasSubstr("It hovers for "), HasSubstr("until full throttle no longer"), HasSubstr("at full duty")));
+  // As a key of the vehicle it counts in every study, and in run.
+  const Json metric = run(with({"run"}, {"--set", "supply.throttle=hover", "--endurance", "--json"})).json();
+  EXPECT_NEAR(metric["hover_s"].get<double>() / json["hover_s"].get<double>(), 1.0, 1e-5);
+  EXPECT_THAT(run({"endurance", battery, "--hover"}).out, HasSubstr("It does not hover: full throttle lifts 0.6"));
+  EXPECT_THAT(run({"endurance", plain, "--hover"}).err, HasSubstr("only a battery runs down"));
+  EXPECT_THAT(run({"run", plain, "--set", "supply.throttle=hover"}).err,
+              HasSubstr("belongs to supply.type = battery or battery-sine"));
+  EXPECT_THAT(run({"run", battery, "--set", "supply.throttle=full"}).err, HasSubstr("fixed or hover"));
 }
 
 TEST_F(Endurance, DutyForALift) {

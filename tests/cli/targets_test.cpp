@@ -57,6 +57,34 @@ TEST_F(Targets, LiftAboveThePeakIsRefusedWithThePeak) {
   EXPECT_LT(beyond.json()["angle_of_attack_min_deg"].get<double>(), 0.0);
 }
 
+TEST_F(Targets, ThePowerIsFoundByTheVoltage) {
+  const Json json = flapper({"--power", "500 mW", "--json"}).json();
+  EXPECT_NEAR(json["power_electrical_w"].get<double>(), 0.5, 1e-6);
+  const Outcome much = flapper({"--power", "1 kW"});
+  EXPECT_EQ(much.status, 2);
+  EXPECT_THAT(much.err, HasSubstr("--power 1 kW: 1000 W cannot be held: at "));
+  EXPECT_THAT(flapper({"--power", "0 W"}).err, HasSubstr("--power: must be > 0 W"));
+  EXPECT_THAT(flapper({"--power", "1 W", "--lift", "1 mN"}).err, HasSubstr("--lift excludes --power"));
+}
+
+// By stated laws, in a file that runs.
+TEST_F(Targets, ScaleWritesALargerVehicle) {
+  const Outcome o = run({"scale", path("flapper.toml"), "--wing", "1.1", "-o", path("larger.toml")});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("wing.planform.length"));
+  EXPECT_THAT(read(path("larger.toml")), HasSubstr("with wings 1.1 times as large"));
+  EXPECT_EQ(run({"run", path("larger.toml")}).status, 0);
+  const Json json = run({"scale", path("flapper.toml"), "--vehicle", "0.5", "--json"}).json();
+  EXPECT_EQ(json["factor"], 0.5);
+  for (const Json& p : json["parameters"]) {
+    EXPECT_NEAR(p["after"].get<double>(), p["before"].get<double>() * std::pow(0.5, p["exponent"].get<double>()),
+                1e-12 * std::abs(p["after"].get<double>()));
+  }
+  EXPECT_THAT(run({"scale", path("flapper.toml")}).err, HasSubstr("give --wing FACTOR or --vehicle FACTOR"));
+  EXPECT_THAT(run({"scale", path("flapper.toml"), "--wing", "-1"}).err,
+              HasSubstr("--wing: must lie between 0.001 and 1000, got -1"));
+}
+
 TEST_F(Targets, PwmReachesItByItsDuty) {
   const std::string pwm = "supply={type=\"pwm\", voltage=\"12 V\", duty=0.2, frequency=\"20 kHz\"}";
   const Outcome o = flapper({"--lift-to-weight", "1", "--json", "--set", pwm});

@@ -179,7 +179,8 @@ std::string refusal(const F& f) {
 
 TEST(Parameters, RefusesWhatHasNoPlace) {
   Design<double> d{};
-  EXPECT_EQ(refusal([&] { set_parameter(d, "supply.duty", 0.5); }), "supply.duty: only with supply.type = pwm");
+  EXPECT_EQ(refusal([&] { set_parameter(d, "supply.duty", 0.5); }),
+            "supply.duty: only with supply.type = pwm or battery");
   EXPECT_EQ(refusal([&] { set_parameter(d, "friction.type", 0.5); }), "friction.type: is not a number");
   EXPECT_EQ(refusal([&] { set_parameter(d, "motor.inerta", 0.5); }),
             "motor.inerta: unknown key; did you mean motor.inertia?");

@@ -30,6 +30,17 @@ class Studies(unittest.TestCase):
         self.assertIn("battery", str(flight))
         with self.assertRaisesRegex(wb.InputError, "^supply.type: only a battery runs down"):
             reference().endurance()
+        light = wb.read(file).replace({"vehicle.mass": "1.5 g"})
+        hover = light.endurance(hover=True)
+        self.assertEqual(dict(hover), printed("endurance", file, "--set", "vehicle.mass=1.5 g", "--hover"))
+        self.assertEqual(hover["throttle"], "hover")
+        import numpy as np
+
+        np.testing.assert_allclose(hover.trajectory.lift_to_weight, 1.0, rtol=1e-9)
+        duty = light.solve(lift_to_weight=1, tolerance=1e-9).vehicle.supply.duty
+        self.assertAlmostEqual(hover["history"]["duty"][0] / duty, 1.0, 7)
+        metric = light.replace({"supply.throttle": "hover"}).solve(endurance=True)
+        self.assertAlmostEqual(float(metric.hover) / hover["hover_s"], 1.0, 5)
 
     @unittest.skipUnless(PROGRAM, "needs the program")
     def test_control_models_are_the_programs(self):

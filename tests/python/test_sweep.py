@@ -52,6 +52,10 @@ class Columns(unittest.TestCase):
         beside = [vehicle.replace({"motor.gear_ratio": gears[3] + s}).solve(lift_to_weight=1, tolerance=1e-10) for s in (step, -step)]
         change = float(beside[0].power_electrical) - float(beside[1].power_electrical)
         self.assertAlmostEqual(change / (2.0 * step) / one[0], 1.0, 5)
+        powers = vehicle.solve_columns({"motor.gear_ratio": gears}, power="1.5 W")
+        np.testing.assert_allclose(powers.power_electrical, 1.5, rtol=1e-6)
+        one_power = vehicle.replace({"motor.gear_ratio": gears[2]}).solve(power=1.5, tolerance=1e-9)
+        self.assertAlmostEqual(float(one_power.lift_mean) / powers.lift_mean[2], 1.0, 5)
         with_mass = vehicle.solve_columns({"vehicle.mass": [0.016, 0.018], "lift": [0.15, 0.2]})
         np.testing.assert_allclose(with_mass.lift_mean, [0.15, 0.2], rtol=1e-6)
         data = vehicle.sweep({"motor.gear_ratio": [8, 12], "lift_to_weight": [1, 1.2]}, metrics=["lift_to_weight"])
@@ -131,9 +135,11 @@ class Columns(unittest.TestCase):
         with self.assertRaisesRegex(wb.InputError, "^supply.type: a sine supply gives no steady flapping"):
             sine = vehicle.replace({"supply": {"type": "sine", "amplitude": "3 V", "frequency": "20 Hz"}})
             sine.solve_columns({"supply.amplitude": [1.0]})
-        with self.assertRaisesRegex(wb.InputError, "^supply.type: the charge of a battery"):
-            battery = wb.read(DATA / "designs" / "friction2022-battery.toml")
-            battery.solve_columns({"friction.radius": [2e-3]}, frequency=20.0)
+        battery = wb.read(DATA / "designs" / "friction2022-battery.toml")
+        slow = battery.solve_columns({"friction.radius": [2e-3, 3e-3]}, frequency=20.0)
+        np.testing.assert_allclose(slow.frequency, 20.0, rtol=1e-6)
+        with self.assertRaisesRegex(wb.InputError, "^supply.duty: has no effect where the frequency is held: the duty"):
+            battery.solve_columns({"supply.duty": [0.5]}, frequency=20.0)
         with self.assertRaisesRegex(ValueError, "motor.inertia has 2 values, supply.voltage has 1"):
             vehicle.solve_columns({"supply.voltage": [1.0], "motor.inertia": [1.0, 2.0]})
         with self.assertRaisesRegex(ValueError, "no key has an array"):

@@ -145,15 +145,12 @@ TEST(BatteryVehicle, WaveformVoltageSagsWithTheCurrent) {
   }
 }
 
-TEST(BatteryVehicle, NoVoltageCanBeChosen) {
-  try {
-    run_design(battery_design(), {.frequency = 20.0});
-    FAIL() << "accepted";
-  } catch (const ParameterError& e) {
-    EXPECT_STREQ(e.what(),
-                 "supply.type: the charge of a battery gives its voltage, so none can be chosen for the "
-                 "flapping frequency");
-  }
+TEST(BatteryVehicle, TheDutyIsFoundForAFrequency) {
+  const RunResult r = run_design(battery_design(), {.frequency = 10.0});
+  ASSERT_EQ(r.search->outcome, FrequencyOutcome::reached);
+  EXPECT_NEAR(r.metrics[Metric::frequency], 10.0, 1e-5);
+  EXPECT_LT(r.design.supply.duty, 1.0);
+  EXPECT_NEAR(run_design(r.design).metrics[Metric::frequency], 10.0, 1e-4);
 }
 
 }  // namespace

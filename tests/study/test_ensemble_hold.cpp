@@ -144,6 +144,34 @@ TEST(EnsembleHold, FindsTheLiftThatCarriesTheWeightOfEveryKindOfCrank) {
   }
 }
 
+TEST(EnsembleHold, FindsThePowersThatTheSearchOfOneFinds) {
+  std::mt19937_64 random(372);
+  std::uniform_real_distribution<double> log_power(std::log(0.02), std::log(3.0));
+  for (const KindBox box :
+       {KindBox::reference, KindBox::pwm, KindBox::four_bar, KindBox::gear_loss, KindBox::coreless}) {
+    SCOPED_TRACE(std::string(kind_box_names[std::size_t(box)]));
+    std::vector<EnsembleMember> members;
+    std::vector<Hold> holds;
+    for (int n = 0; n < 20; ++n) {
+      const Design<double> design = kind_design(box, random);
+      members.push_back({resolve(design), reporting_of(design)});
+      holds.push_back({Held::power, std::exp(log_power(random))});
+    }
+    const Results results = held(members, holds, {});
+    int reached = 0;
+    for (std::size_t n = 0; n < members.size(); ++n) {
+      const FrequencySearch one = find_voltage(members[n].vehicle, holds[n], {}, start_up_in_time());
+      ASSERT_EQ(results.reached[n] == FrequencyOutcome::reached, one.outcome == FrequencyOutcome::reached)
+          << n << ": " << describe(one.finding);
+      if (one.outcome != FrequencyOutcome::reached) continue;
+      ++reached;
+      EXPECT_NEAR(results.outcomes[n].metrics[Metric::power_electrical] / holds[n].value, 1.0, 1e-6);
+      EXPECT_NEAR(results.outcomes[n].metrics[Metric::voltage] / one.voltage, 1.0, 2e-6);
+    }
+    EXPECT_GE(reached, 8);
+  }
+}
+
 TEST(EnsembleHold, LiftsOfDirectDrivesAndWingsOnHingesAreSoughtOneByOne) {
   for (const char* name : {"two-wing-direct.toml", "pitch-hinge-crank.toml"}) {
     SCOPED_TRACE(name);

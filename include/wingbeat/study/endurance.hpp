@@ -7,6 +7,10 @@
 // settled at every charge, or, where its time constants are given, warms up from its surroundings: two more states,
 // d(T_w - T_case)/dt and dT_case/dt, beside the charge.
 //
+// A speed control passes the battery's power on by its duty D: the motor sees D (E - R_i D i), the battery the mean
+// current D i. Throttle::hover sets the duty, or the amplitude of a bridge, so that the mean lift carries the weight at
+// every charge, and the flight ends where the largest no longer does.
+//
 // A bridge between battery and motor loses nothing and holds its amplitude: the battery gives the mean electrical power
 // P_e of a cycle at the direct current that its terminal voltage asks for, (E - R_i I) I = P_e.
 #pragma once
@@ -30,6 +34,7 @@ struct EnduranceOptions {
   /// Least number of rows between the first and the last charge; those of a discharge curve of at most as many are
   /// added.
   int intervals = 64;
+  bool climb_margin = true;  ///< of a throttled flight: what each row has at full duty, for an orbit each
 };
 
 enum class EnduranceEnd {
@@ -37,6 +42,7 @@ enum class EnduranceEnd {
   empty,         ///< no charge is left
   cutoff,        ///< the mean terminal voltage has fallen to the cut-off voltage
   bridge,        ///< the terminal voltage under load has fallen to the amplitude of the bridge's sine
+  sinks,         ///< Throttle::hover: even a duty of 1 no longer carries the weight
   stops          ///< no rotating orbit is left
 };
 
@@ -61,6 +67,12 @@ struct EnduranceRow {
   DomainStatus domain = {};           ///< limits of the model that are exceeded there
   double terminal_voltage = absent;   ///< mean at the battery's terminals [V]
   double battery_current = absent;    ///< mean from the battery [A]
+  double duty = absent;               ///< of the speed control [1]; absent behind a bridge
+  double amplitude = absent;          ///< Throttle::hover behind a bridge: of its sine [V]
+  /// Lift over weight at a duty of 1, at this charge and these temperatures of the motor; absent without
+  /// Throttle::hover, behind a bridge and where it would not flap.
+  double full_lift_to_weight = absent;
+  DomainStatus full_domain = {};  ///< limits of the model that are exceeded there
 };
 
 /// In words: describe() of report/describe.hpp.
@@ -71,6 +83,8 @@ struct EnduranceResult {
   double first_charge = absent;                     ///< state of charge at the start [1]
   double first_voltage = absent;                    ///< open-circuit voltage of the whole battery there [V]
   std::optional<double> cutoff_voltage;             ///< of the whole battery [V]
+  Throttle throttle = Throttle::fixed;
+  double first_full_lift_to_weight = absent;  ///< Throttle::hover: at full throttle and the first charge
   Hover hover = Hover::unknown;
   std::optional<EnduranceRow> hover_lost;  ///< the moment of Hover::lost: lift equals weight, or the domain is left
   std::vector<EnduranceRow> rows;          ///< from the first to the last charge; empty if it never starts
@@ -86,7 +100,8 @@ struct EnduranceResult {
   }
 };
 
-/// Flies the design's battery from its charge until it is empty, at its cut-off voltage, or no longer turns the crank.
+/// Flies the design's battery from its charge until it is empty, at its cut-off voltage, no longer turns the crank, or,
+/// with Throttle::hover, no longer carries the weight.
 /// Throws ParameterError for a supply that is no battery and for options out of range. With the mean current
 /// \f$\overline{i}(s)\f$ of steady flapping at the charge s, from \f$s_0\f$ at the start (behind a bridge the direct
 /// current I that the mean power asks for, \f$(n E - n R_\mathrm{i} I)\, I = P_\mathrm{e}\f$):
@@ -114,8 +129,8 @@ struct Endurance {
 
 /// What is wanted of a flight to a relative `tolerance`, for some fifty orbits, and its derivatives: exact, for eleven
 /// orbits with gradients each, where the battery is emptied to its cut-off or to the end and where lift falls below the
-/// weight; by central differences where no orbit is left before that, where hover ends by leaving the domain, or where
-/// the motor's temperatures are states of the flight. Throws as simulate_discharge().
+/// weight; by central differences where no orbit is left before that, where hover ends by leaving the domain, where the
+/// motor's temperatures are states of the flight, and under a speed control. Throws as simulate_discharge().
 Endurance endurance_of(const Design<double>& design, Condition condition, double tolerance,
                        std::span<const DesignParameter> parameters = {}, FlightMetrics wanted = {true, true, false});
 

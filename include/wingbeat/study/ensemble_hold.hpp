@@ -1,4 +1,4 @@
-// Many vehicles, each held at a flapping frequency or a lift by its voltage.
+// Many vehicles, each held at a flapping frequency, a lift or an electrical power by its voltage.
 #pragma once
 
 #include <span>
@@ -16,9 +16,9 @@ namespace wingbeat {
 /// of validity is for the caller to assess, as at a held voltage.
 ///
 /// All members of a call are searched together by batches; find_voltage() settles what they cannot: wings on hinges and
-/// direct drives, where a lift is held, and lifts that a lower voltage may yield as well. The members' voltages are
-/// changed. Throws as solve_ensemble does, and ParameterError unless every value is > 0 and all hold a frequency or all
-/// a lift.
+/// direct drives, where a lift or a power is held, and lifts that a lower voltage may yield as well. The members'
+/// voltages are changed. Throws as solve_ensemble does, and ParameterError unless every value is > 0 and all hold a
+/// frequency, all a lift or all a power.
 void solve_ensemble_held(std::span<EnsembleMember> members, std::span<const Hold> holds, const EnsembleOptions& options,
                          const StartUp& start_up, std::span<EnsembleOutcome> outcomes,
                          std::span<FrequencyOutcome> reached);

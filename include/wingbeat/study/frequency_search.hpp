@@ -1,6 +1,8 @@
-// The voltage at which a vehicle flaps at a wanted frequency, or with a wanted lift; docs/targets.md.
+// The voltage at which a vehicle flaps at a wanted frequency, with a wanted lift, or on a wanted power;
+// docs/targets.md.
 #pragma once
 
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -22,7 +24,7 @@ inline constexpr double extrapolation_angle_deg = -360.0;
 /// Largest speed of the wings at S_3/S_2 of SearchRange::extrapolation [m/s]: ten times the domain's.
 inline constexpr double extrapolation_flow_speed = 10.0 * flow_speed_max;
 
-/// What came of the search for a frequency; "faster" and "slower" stand for more and less lift where that is sought.
+/// What came of the search for a frequency; "faster" and "slower" stand for more and less of what is sought.
 enum class FrequencyOutcome {
   reached,
   never_flaps,    ///< at no voltage searched
@@ -32,7 +34,7 @@ enum class FrequencyOutcome {
   outside_domain  ///< it flaps, but inside the domain of validity at no voltage, or not at the one that would do
 };
 
-enum class Sought { frequency, lift };
+enum class Sought { frequency, lift, power };
 
 /// How a search ended, in numbers; in words: describe() of report/describe.hpp. Behind each kind stand the members that
 /// belong to it beside sought, target and range.
@@ -50,11 +52,11 @@ struct SearchFinding {
   };
   struct VoltagePoint {
     double voltage;  ///< [V]
-    double value;    ///< of what is sought [Hz or N]
+    double value;    ///< of what is sought [Hz, N or W]
   };
   Kind kind = Kind::never_flaps;
   Sought sought = Sought::frequency;
-  double target = absent;  ///< [Hz or N]
+  double target = absent;  ///< [Hz, N or W]
   SearchRange range = SearchRange::domain;
   std::optional<VoltagePoint> point = {}, min_point = {}, max_point = {};
   double last_voltage = absent;                     ///< highest tried [V]
@@ -79,7 +81,7 @@ struct FrequencySearch {
   SearchFinding finding;  ///< what was found, or which frequencies can be reached
   int evaluations = 0;
   /// Not reached: where the vehicle comes closest in the range, such as the peak of the lift or its onset: voltage [V]
-  /// and what it reaches there [Hz or N]. Absent where no cycle of the range was computed.
+  /// and what it reaches there [Hz, N or W]. Absent where no cycle of the range was computed.
   double closest_voltage = absent;
   double closest_value = absent;
 };
@@ -98,23 +100,32 @@ FrequencySearch refuse_frequency(const Vehicle<double>& vehicle, double frequenc
 
 /// Finds the constant voltage at which the vehicle flaps at `frequency` [Hz], to within options.tolerance, by the
 /// secant method in the logarithms, in a bracket; a voltage at which it does not flap counts as too low.
-/// vehicle.voltage is not used. From rest, a crank flaps the faster the higher the voltage, so that there is one answer
-/// at most. Throws ParameterError unless frequency > 0.
+/// vehicle.voltage is that of a battery at a duty of 1, and else not used. No voltage above `highest_voltage` [V] is
+/// tried. From rest, a crank flaps the faster the higher the voltage, so that there is one answer at most. Throws
+/// ParameterError unless frequency > 0.
 FrequencySearch find_voltage_for_frequency(const Vehicle<double>& vehicle, double frequency,
                                            const SteadyOptions& options = {}, const StartUp& start_up = {},
-                                           SearchRange range = SearchRange::extrapolation);
+                                           SearchRange range = SearchRange::extrapolation,
+                                           double highest_voltage = HUGE_VAL);
+
+/// Finds the voltage of a mean electrical power [W] as find_voltage_for_frequency() does: it grows with the voltage as
+/// well. Throws ParameterError unless power > 0.
+FrequencySearch find_voltage_for_power(const Vehicle<double>& vehicle, double power, const SteadyOptions& options = {},
+                                       const StartUp& start_up = {}, SearchRange range = SearchRange::extrapolation,
+                                       double highest_voltage = HUGE_VAL);
 
 struct LiftSearchOptions {
   double nominal =
       1.0;  ///< usual voltage [V], > 0: ten times as much is searched at least; a direct drive starts there
   SearchRange range = SearchRange::domain;
+  double highest_voltage = HUGE_VAL;  ///< none above is tried [V]
 };
 
 /// The lowest voltage (direct drive: amplitude) at which the vehicle has the mean lift `lift` [N] in the range, to
-/// within options.tolerance; vehicle.voltage is not used. The lift is followed upwards from where the vehicle starts to
-/// flap, or from next to none, by cubics through values and exact derivatives, checked half-way, so that neither a peak
-/// nor a pair of answers hides between two voltages. A refusal states the peak, or the onset if that lifts too much
-/// already. Throws ParameterError unless lift and nominal > 0.
+/// within options.tolerance; vehicle.voltage is that of a battery at a duty of 1, and else not used. The lift is
+/// followed upwards from where the vehicle starts to flap, or from next to none, by cubics through values and exact
+/// derivatives, checked half-way, so that neither a peak nor a pair of answers hides between two voltages. A refusal
+/// states the peak, or the onset if that lifts too much already. Throws ParameterError unless lift and nominal > 0.
 FrequencySearch find_voltage_for_lift(const Vehicle<double>& vehicle, double lift, const SteadyOptions& options = {},
                                       const StartUp& start_up = {}, const LiftSearchOptions& where = {});
 

@@ -1,15 +1,19 @@
 // What a study finds the voltage of each design for.
 #pragma once
 
+#include <cmath>
+
 #include "wingbeat/cycle/held.hpp"
+#include "wingbeat/parts/supply.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 
 namespace wingbeat {
 
 struct Hold {
   Held held = Held::frequency;                    ///< not the voltage, which needs no search
-  double value = absent;                          ///< > 0 [Hz, N or 1]
-  SearchRange range = SearchRange::coefficients;  ///< where a lift is sought; a frequency is sought everywhere
+  double value = absent;                          ///< > 0 [Hz, N, 1 or W]
+  SearchRange range = SearchRange::coefficients;  ///< where a lift is sought; the others are sought everywhere
+  double highest_voltage = HUGE_VAL;              ///< that the supply can give [V]
 };
 
 /// Of studies, which assess the other limits of the domain design by design.
@@ -17,10 +21,24 @@ constexpr SearchRange search_range(bool allow_extrapolation) {
   return allow_extrapolation ? SearchRange::extrapolation : SearchRange::coefficients;
 }
 
-/// A mean lift [N] to be held, whichever of the two it was given as; NaN for a frequency, and without a mass.
+/// A mean lift [N] to be held, whichever of the two it was given as; NaN for the others, and without a mass.
 double held_lift(const Hold& hold, const Reporting& reporting);
 
-/// find_voltage_for_frequency or find_voltage_for_lift; the vehicle's voltage counts as its usual one.
+/// What a search begins with: of a battery, a duty of 1.
+void set_full_duty(Supply<double>& supply);
+
+/// The highest mean voltage, or amplitude, that a search may ask of a supply: a battery's without load [V]; infinite of
+/// the others, which are what is sought.
+double highest_voltage(const Supply<double>& supply);
+
+/// The supply that gives a motor what a search has found: the mean voltage at its terminals and the mean current of
+/// steady flapping. A battery gives it by the duty D, the smaller one of the two that do:
+/// \f[
+/// \overline{v} = D \left( n E - D\, n R_\mathrm{i}\, \overline{\imath} \right)
+/// \f]
+void set_found(Supply<double>& supply, const Metrics<double>& found);
+
+/// find_voltage_for_frequency, _for_power or _for_lift; the vehicle's voltage counts as its usual one.
 FrequencySearch find_voltage(const Vehicle<double>& vehicle, const Hold& hold, const SteadyOptions& options,
                              const StartUp& start_up);
 

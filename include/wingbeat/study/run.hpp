@@ -29,9 +29,11 @@ struct RunOptions {
   /// [Hz]; given: the supply's voltage is replaced by the one that yields it, or a direct drive's supply has this
   /// frequency
   std::optional<double> frequency = {};
-  /// [N]; given instead of the frequency: the same for the mean lift, which a pwm supply reaches by its duty.
+  /// [N]; given instead of the frequency: the same for the mean lift, which a pwm supply reaches by its duty. On a
+  /// battery both are reached by the duty.
   std::optional<double> lift = {};
-  bool allow_extrapolation = false;  ///< a search for a frequency or a lift may leave the model's domain
+  std::optional<double> power = {};  ///< [W]; given instead of both: the same for the mean electrical power
+  bool allow_extrapolation = false;  ///< a search for a frequency, a lift or a power may leave the model's domain
   int waveform_rows = 0;             ///< instants of one cycle to return, both ends included; 0: none
   bool endurance = false;            ///< of a vehicle on a battery: Metric::hover and Metric::endurance, too
 };
@@ -59,8 +61,8 @@ struct RunResult {
 };
 
 /// Computes one validated design. Throws ParameterError for a crank on a sine supply where Method::orbit, a frequency
-/// or a lift is asked for (it has no periodic orbit in crank angle), for a battery where a frequency or a lift is, for
-/// a duty above 1, for a lift that takes more than the battery behind a bridge has and for options out of range.
+/// or a lift is asked for (it has no periodic orbit in crank angle), for a duty of pwm above 1 and for options out of
+/// range.
 RunResult run_design(const Design<double>& design, const RunOptions& options = {});
 
 }  // namespace wingbeat

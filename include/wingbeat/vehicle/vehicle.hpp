@@ -141,6 +141,14 @@ void set_piezo(Vehicle<S>& v, const PiezoDesign<S>& d, const S& count) {
   v.motor = {S(0.0), S(0.0), S(0.0), v.piezo.mass * per_ratio, v.piezo.damping * per_ratio};
 }
 
+/// Gives the motor the mean voltage [V] that a search tries: a battery's speed control does so by its duty D, with
+/// whose square the resistance between them goes. `v` stands at a voltage > 0 where it has such a resistance.
+template <Scalar S>
+void set_mean_voltage(Vehicle<S>& v, const S& voltage) {
+  if (value_of(v.source_resistance) > 0.0) v.source_resistance = v.source_resistance * square(voltage / v.voltage);
+  v.voltage = voltage;
+}
+
 /// The vehicle that a design describes, in a condition, its motor's constants as stated, at the reference temperature.
 /// Does not check ranges: validate(design) does.
 template <Scalar S>

@@ -23,7 +23,7 @@ _MAX_THREADS = 4096
 
 
 #: What a voltage can be found for, and its unit.
-HELD = {"frequency": "Hz", "lift": "N", "lift_to_weight": "1"}
+HELD = {"frequency": "Hz", "lift": "N", "lift_to_weight": "1", "power": "W"}
 
 
 def wrong_type(name: str, expected: str, value: object) -> TypeError:

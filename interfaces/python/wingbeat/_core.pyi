@@ -30,6 +30,7 @@ def run(
     frequency: float | None,
     lift: float | None,
     lift_to_weight: float | None,
+    power: float | None,
     allow_extrapolation: bool,
     points: int,
     endurance: bool,
@@ -117,7 +118,7 @@ class Simulation:
     def save(self) -> tuple[float, ...]: ...
     def restore(self, numbers: Sequence[float]) -> None: ...
 
-def endurance(design: Design, allow_extrapolation: bool) -> dict[str, Any]: ...
+def endurance(design: Design, hover: bool, allow_extrapolation: bool) -> dict[str, Any]: ...
 def linearise(
     design: Design,
     condition: str,

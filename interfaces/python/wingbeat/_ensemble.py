@@ -185,6 +185,7 @@ def solve_columns(
     frequency: float | str | None = None,
     lift: float | str | None = None,
     lift_to_weight: float | None = None,
+    power: float | str | None = None,
     allow_extrapolation: bool = False,
     condition: str = "air",
     tolerance: float = 1e-6,
@@ -197,12 +198,13 @@ def solve_columns(
     Parameters
     ----------
     columns : a dict or DataFrame with an array of SI numbers (or of texts with units) for each numeric key that varies;
-        other values hold for all designs. The key "frequency" is a flapping frequency to be held [Hz], "lift" and
-        "lift_to_weight" are held likewise.
+        other values hold for all designs. The key "frequency" is a flapping frequency to be held [Hz], "lift",
+        "lift_to_weight" and "power" are held likewise.
     vehicle : what the other keys are; not needed where the columns state a whole vehicle
     frequency : [Hz], held by all designs: the voltage is found for each
     lift : [N], the same for the mean lift: the lowest voltage that yields it
     lift_to_weight : the same for the lift over the weight; 1: hover
+    power : [W], the same for the mean electrical power
     allow_extrapolation : a search for a lift may leave the model's domain
     condition : "air", "vacuum" or "wingless"
     tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
@@ -234,7 +236,7 @@ def solve_columns(
     given = mapping("columns", {key: columns[key] for key in columns})
     if vehicle is not None:
         vehicle_of(vehicle)
-    asked = {"frequency": frequency, "lift": lift, "lift_to_weight": lift_to_weight}
+    asked = {"frequency": frequency, "lift": lift, "lift_to_weight": lift_to_weight, "power": power}
     for name, value in asked.items():
         if value is not None and given.get(name) is not None:
             raise refused(name, "is given in the columns and beside them")

@@ -212,6 +212,7 @@ class _OwnProblem:
             "frequency": None,
             "lift": None,
             "lift_to_weight": None,
+            "power": None,
             "allow_extrapolation": allow_extrapolation,
             "points": 0,
             "endurance": False,

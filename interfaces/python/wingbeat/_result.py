@@ -222,6 +222,7 @@ def solve(
     frequency: float | str | None = None,
     lift: float | str | None = None,
     lift_to_weight: float | None = None,
+    power: float | str | None = None,
     condition: str = "air",
     method: str = "orbit",
     tolerance: float = 1e-6,
@@ -241,10 +242,11 @@ def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult 
     frequency : [Hz], in place of a voltage: the voltage is found that yields it (a direct drive's supply has it)
     lift : [N], in place of either: the voltage (pwm: the duty) is found that yields this mean lift
     lift_to_weight : the same for the lift over the weight; 1: hover
+    power : [W], the same for the mean electrical power
     condition : "air", "vacuum" or "wingless"
     method : "orbit", or "transient": simulated from rest
     tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
-    allow_extrapolation : a search for a frequency or a lift may leave the model's domain
+    allow_extrapolation : a search for a frequency, a lift or a power may leave the model's domain
     endurance : of a vehicle on a battery: how long it hovers and how long it flaps, too, which costs a flight
 
     Returns
@@ -253,8 +255,8 @@ def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult 
 
     Raises
     ------
-    InputError : for options that cannot be used, and for more than one of voltage, frequency, lift and
-        lift_to_weight
+    InputError : for options that cannot be used, and for more than one of voltage, frequency, lift,
+        lift_to_weight and power
     TypeError : for what is neither a vehicle nor columns
 
     Example
@@ -280,13 +282,14 @@ def _solve(
     frequency: float | str | None = None,
     lift: float | str | None = None,
     lift_to_weight: float | None = None,
+    power: float | str | None = None,
     condition: str = "air",
     method: str = "orbit",
     tolerance: float = 1e-6,
     allow_extrapolation: bool = False,
     endurance: bool = False,
 ) -> RunResult:
-    one_of(voltage=voltage, frequency=frequency, lift=lift, lift_to_weight=lift_to_weight)
+    one_of(voltage=voltage, frequency=frequency, lift=lift, lift_to_weight=lift_to_weight, power=power)
     options: dict[str, Any] = {
         "condition": text("condition", condition),
         "method": text("method", method),
@@ -294,6 +297,7 @@ def _solve(
         "frequency": optional_number("frequency", frequency, HELD["frequency"]),
         "lift": optional_number("lift", lift, HELD["lift"]),
         "lift_to_weight": optional_number("lift_to_weight", lift_to_weight, HELD["lift_to_weight"]),
+        "power": optional_number("power", power, HELD["power"]),
         "allow_extrapolation": flag("allow_extrapolation", allow_extrapolation),
         "points": 0,
         "endurance": flag("endurance", endurance),

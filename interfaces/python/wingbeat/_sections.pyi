@@ -67,9 +67,15 @@ class SupplySection(Section):
         """
     @property
     def duty(self) -> Quantity | None:
-        """fraction of a period switched on.
-        Number. Range: 0 to 1. Default: required.
-        Only with supply.type = pwm.
+        """D, fraction of a period switched on; required of pwm, on a battery the speed control's.
+        Number. Range: 0 to 1. Default: 1.
+        Only with supply.type = pwm or battery.
+        """
+    @property
+    def throttle(self) -> str | None:
+        """what the speed control does in flight: fixed holds the duty (or a bridge's amplitude), hover sets it so that the mean lift carries the weight.
+        Range: fixed or hover. Default: fixed.
+        Only with supply.type = battery or battery-sine.
         """
     @property
     def cells(self) -> Quantity | None:

@@ -162,12 +162,13 @@ def _file_of(study: Study, vehicle: Vehicle | None) -> Iterator[bytes]:
 
 
 @operation
-def endurance(vehicle: Vehicle, *, allow_extrapolation: bool = False) -> Flight:
+def endurance(vehicle: Vehicle, *, hover: bool = False, allow_extrapolation: bool = False) -> Flight:
     """How long a vehicle hovers and flaps on its battery: `wingbeat endurance`.
 
     Parameters
     ----------
     vehicle : a Vehicle on a battery
+    hover : fly at the throttle that just carries the weight, as `supply.throttle = "hover"`
     allow_extrapolation : flight outside the model's domain may hover
 
     Returns
@@ -184,7 +185,8 @@ def endurance(vehicle: Vehicle, *, allow_extrapolation: bool = False) -> Flight:
     >>> f"{flight['endurance_s']:.0f} s"
     '492 s'
     """
-    return Flight(_core.endurance(vehicle_of(vehicle)._design, flag("allow_extrapolation", allow_extrapolation)))
+    options = flag("hover", hover), flag("allow_extrapolation", allow_extrapolation)
+    return Flight(_core.endurance(vehicle_of(vehicle)._design, *options))
 
 
 def identify_motor(

@@ -36,6 +36,7 @@ def sweep(
     frequency: float | str | None = None,
     lift: float | str | None = None,
     lift_to_weight: float | None = None,
+    power: float | str | None = None,
     allow_extrapolation: bool = False,
     tolerance: float = 1e-6,
     metrics: Iterable[str] | None = None,
@@ -49,13 +50,14 @@ def sweep(
     Parameters
     ----------
     vehicle : a Vehicle
-    axes : keys of the vehicle, "frequency", "lift", "lift_to_weight", "condition" or "springs", each with its values:
-        SI numbers, texts with units, names; the last varies fastest
+    axes : keys of the vehicle, "frequency", "lift", "lift_to_weight", "power", "condition" or "springs", each with its
+        values: SI numbers, texts with units, names; the last varies fastest
     output : a file (.nc) that keeps the data set, as `wingbeat sweep -o` writes it: interrupted, the same call goes on
         from what is there. Without it nothing is left on the disk.
     frequency : [Hz], held by all designs: the voltage is found for each
     lift : [N], the same for the mean lift: the lowest voltage that yields it
     lift_to_weight : the same for the lift over the weight; 1: hover
+    power : [W], the same for the mean electrical power
     allow_extrapolation : a search for a lift may leave the model's domain
     tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
     metrics : those wanted; default: all that the vehicle has but hover and endurance
@@ -86,7 +88,7 @@ def sweep(
     """
     design, threads, replaces = vehicle_of(vehicle)._design, threads_of(threads), flag("force", force)
     values = {key: axis_values(key, along, _is_number(key)) for key, along in mapping("axes", axes).items()}
-    hold = held_by(frequency=frequency, lift=lift, lift_to_weight=lift_to_weight)
+    hold = held_by(frequency=frequency, lift=lift, lift_to_weight=lift_to_weight, power=power)
     for name in hold:
         if name in values:
             raise refused(name, "is an axis, and held beside it")

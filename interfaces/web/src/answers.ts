@@ -134,7 +134,7 @@ export type Report = {
   hover_s: number | null;
   /** flight time until the battery's end [s]; of a vehicle on a battery; null unless asked for: run --endurance, a study that names it */
   endurance_s: number | null;
-  /** of a pwm supply */
+  /** of a pwm supply or a battery */
   supply_duty?: number;
   /** of a run simulated from rest */
   start_up?: {
