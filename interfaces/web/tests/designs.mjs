@@ -21,7 +21,8 @@ const voltages = ['supply.voltage', 'supply.amplitude', 'supply.duty', 'supply.s
 
 /** `count` designs: vehicle, changes and condition; `values` are those of every vehicle's keys. */
 export function designs(count, values) {
-  const next = sequence(2022);
+  const next = sequence(2022),
+    ofDuties = sequence(2026); // of batteries, which leave the other numbers as they were
   const vehicles = Object.keys(values);
   // A piezo damps so little that some changes leave it without one orbit, which takes seconds to see.
   const changed = vehicles.filter((name) => !('piezo.force_per_volt' in values[name]));
@@ -29,14 +30,17 @@ export function designs(count, values) {
     const vehicle = n < vehicles.length ? vehicles[n] : changed[n % changed.length],
       of = values[vehicle],
       changes = {};
-    const scale = (key, low, high) => {
+    const scale = (key, low, high, draw = next) => {
       const value = of[key];
       if (typeof value === 'number' && value !== 0)
-        changes[key] = String(Number((value * (low + (high - low) * next())).toPrecision(6)));
+        changes[key] = String(Number((value * (low + (high - low) * draw())).toPrecision(6)));
     };
     if (n >= vehicles.length) {
       for (const key of voltages)
-        if (key in of) scale(key, 0.1, key === 'supply.voltage' || key === 'supply.amplitude' ? 1.6 : 1);
+        if (key in of) {
+          const draw = key === 'supply.duty' && 'supply.capacity' in of ? ofDuties : next;
+          scale(key, 0.1, key === 'supply.voltage' || key === 'supply.amplitude' ? 1.6 : 1, draw);
+        }
       for (const key of varied) if (key in of && next() < 0.3) scale(key, 0.4, 1.7);
       if (!('spring.stiffness' in of) && !('spring.resonance' in of) && next() < 0.4) {
         changes['spring.stiffness'] = String(Number((2e-3 * next()).toPrecision(6)));
