@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <cstdint>
 #include <memory>
 #include <optional>
 
@@ -213,8 +214,8 @@ class TableReader {
 
 /// Empty where the bytes are not of that encoding.
 std::optional<std::string> from(const char* encoding, std::string_view text) {
-  const iconv_t converter = iconv_open("UTF-8", encoding);
-  if (converter == iconv_t(-1)) return std::nullopt;
+  auto* const converter = iconv_open("UTF-8", encoding);
+  if (reinterpret_cast<std::intptr_t>(converter) == -1) return std::nullopt;
   const std::unique_ptr<void, int (*)(iconv_t)> closes(converter, iconv_close);
   std::string input(text), output(4 * text.size() + 4, '\0');
   char* in = input.data();

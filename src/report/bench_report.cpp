@@ -26,7 +26,7 @@ const char* role_of(const LogNotes::Column& c) {
 std::string range_of(const LogNotes::Column& c) {
   if (c.values == 0) return "";
   if (c.unit_si == "1") return fmt::format("{:.4g} to {:.4g}", c.min, c.max);
-  return fmt::format("{} to {}", readable(c.min, c.unit_si.c_str()), readable(c.max, c.unit_si.c_str()));
+  return fmt::format("{} to {}", readable(c.min, c.unit_si), readable(c.max, c.unit_si));
 }
 
 }  // namespace
