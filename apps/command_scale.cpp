@@ -65,9 +65,9 @@ void add_scale(CLI::App& program, Action& action) {
       "Example:\n  wingbeat scale friction2022 --wing 1.1 -o larger.toml\n\n"
       "Lengths grow with the factor; densities, stresses, voltages and speeds stay. Times then grow with it, currents\n"
       "with its 2nd power, masses, torques and stiffnesses of hinges with the 3rd, moments of inertia with the 5th.\n"
-      "The air keeps its viscosity, so that the Reynolds number changes, and a motor wound for the same voltage has the\n"
-      "-3rd power of armature resistance: small motors lose more. --wing changes outline, masses and moments of the\n"
-      "wings alone. Comments and units of the file stay.\n\n"
+      "The air keeps its viscosity, so that the Reynolds number changes, and the armature resistance of a motor wound\n"
+      "for the same voltage grows with the -3rd power: small motors lose more. --wing changes outline, masses and\n"
+      "moments of the wings alone. Comments and units of the file stay.\n\n"
       "Exit status: 0 done, 2 bad input or usage.");
   command->callback([a, &action] {
     action = [a] {

@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
-#include "wingbeat/vehicle/parameters.hpp"
+#include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat::detail {
 namespace {
@@ -45,7 +44,7 @@ struct Spelling {
   std::string_view written, expected;
   double factor;
 };
-constexpr double gram_force = 9.80665e-3;
+constexpr double gram_force = 1e-3 * standard_gravity;
 constexpr Spelling spellings[] = {{"g", "N", gram_force},
                                   {"gf", "N", gram_force},
                                   {"gram", "N", gram_force},
@@ -102,8 +101,7 @@ std::string base_name(std::string_view key) {
   return std::string(key);
 }
 
-}  // namespace
-
+/// SI value of a number in a column over the number. Throws UnitError for a unit of another kind.
 double column_factor(std::string_view unit, std::string_view expected) {
   if (expected == "degC") {  // it has a zero of its own
     if (small(unit) == "degc" || unit == "°C") return 1.0;
@@ -116,7 +114,7 @@ double column_factor(std::string_view unit, std::string_view expected) {
   return unit_factor(unit.empty() ? "1" : unit, expected);
 }
 
-std::string bare_name(std::string_view key) { return base_name(key); }
+}  // namespace
 
 const ColumnName* column_named(std::string_view name, std::span<const ColumnName> known) {
   const std::string wanted = base_name(as_name(name));

@@ -24,12 +24,6 @@ const std::vector<ColumnName>& metric_columns();
 /// Of a log over one turn of the crank, beside the crank angle.
 const std::vector<ColumnName>& waveform_quantities();
 
-/// "current_mean" of "current_mean_a".
-std::string bare_name(std::string_view key);
-
-/// SI value of a number in a column over the number. Throws UnitError for a unit of another kind.
-double column_factor(std::string_view unit, std::string_view expected);
-
 /// The column of a name of the program or of one in use at benches ("current", "thrust"), with or without unit; null
 /// where it is none of them.
 const ColumnName* column_named(std::string_view name, std::span<const ColumnName> known);

@@ -36,7 +36,7 @@ struct BenchTable {
 /// A cell without a value: empty, NaN, #N/A and the like.
 bool is_missing(std::string_view cell);
 
-/// The text in UTF-8, which may come as UTF-8 or UTF-16 with or without a mark, or as Windows-1252; `encoding` tells
+/// The text in UTF-8, which may come as UTF-8, as UTF-16 with its mark, or as Windows-1252; `encoding` tells
 /// which. Throws InputError where it is none of them.
 std::string decoded(std::string_view text, const std::string& file, std::string& encoding);
 

@@ -20,49 +20,31 @@ std::string below(const SearchFinding& f) {
   return fmt::format("; below, it is {} ({})", name_of(f.status), describe(f.evidence));
 }
 
-std::string describe_power(const SearchFinding& f) {
-  const std::string cannot = fmt::format("{:.5g} W cannot be held", f.target);
-  switch (f.kind) {
-    case Finding::out_of_range: {
-      std::string text = fmt::format("{}: at {:.4g} V, where it takes {:.4g} W, it leaves the range that is searched",
-                                     cannot, f.point->voltage, f.point->value);
-      if (!f.limits.empty()) text += " (" + describe(f.limits) + ")";
-      if (f.max_point) {
-        text +=
-            fmt::format("; inside it takes {:.4g} W at most, at {:.4g} V", f.max_point->value, f.max_point->voltage);
-      }
-      return text;
-    }
-    case Finding::jumps:
-      return fmt::format(
-          "at {:.5g} V the electrical power jumps from {:.5g} W to {:.5g} W: {:.5g} W in between cannot be held",
-          f.point->voltage, f.min_point->value, f.point->value, f.target);
-    case Finding::too_low_at_first:
-      return fmt::format("{}: at {:.4g} V, the lowest voltage tried, it takes {:.4g} W already", cannot,
-                         f.point->voltage, f.point->value);
-    case Finding::too_low_at_onset:
-      return fmt::format("{}: from rest it flaps only above {:.4g} V, and there takes {:.4g} W already", cannot,
-                         f.point->voltage, f.point->value) +
-             below(f);
-    case Finding::too_high:
-      return fmt::format("{}: up to {:.4g} V it takes {:.4g} W at most, at {:.4g} V", cannot, f.last_voltage,
-                         f.max_point->value, f.max_point->voltage);
-    default: return "";
-  }
-}
+/// What grows with the voltage and is sought, in words.
+struct RateWords {
+  const char *unit, *name;
+  const char *verb, *there;  ///< "it flaps at 5 Hz", "and there at 5 Hz"
+};
 
-std::string describe_frequency(const SearchFinding& f, const char* inside) {
-  const std::string cannot = fmt::format("{:.5g} Hz cannot be reached", f.target);
+/// Of a frequency or a power.
+std::string describe_rate(const SearchFinding& f, const char* inside) {
+  const bool power = f.sought == Sought::power;
+  const RateWords words = power ? RateWords{"W", "electrical power", "takes", "takes"}
+                                : RateWords{"Hz", "flapping frequency", "flaps at", "at"};
+  const std::string cannot = fmt::format("{:.5g} {} cannot be reached", f.target, words.unit);
+  const auto doing = [&](const SearchFinding::VoltagePoint& p) {
+    return fmt::format("{} {:.4g} {}", words.verb, p.value, words.unit);
+  };
   switch (f.kind) {
     case Finding::out_of_range: {
       const std::string why = f.range == SearchRange::domain
                                   ? describe(f.limits)
                                   : fmt::format("the angle of attack falls below {:.4g} deg", extrapolation_angle_deg);
-      std::string text = fmt::format("{}{}: at {:.4g} V, where it flaps at {:.4g} Hz, {}", cannot, inside,
-                                     f.point->voltage, f.point->value, why);
-      if (f.max_point)
-        text += fmt::format("; inside it flaps at {:.4g} Hz at most, at {:.4g} V", f.max_point->value,
-                            f.max_point->voltage);
+      std::string text =
+          fmt::format("{}{}: at {:.4g} V, where it {}, {}", cannot, inside, f.point->voltage, doing(*f.point), why);
+      if (f.max_point) {
+        text += fmt::format("; inside it {} at most, at {:.4g} V", doing(*f.max_point), f.max_point->voltage);
+      }
       return text;
     }
     case Finding::beyond_any_voltage: {
@@ -76,18 +58,18 @@ std::string describe_frequency(const SearchFinding& f, const char* inside) {
     }
     case Finding::jumps:
       return fmt::format(
-          "at {:.5g} V the flapping frequency jumps from {:.5g} Hz to {:.5g} Hz: {:.5g} Hz in between cannot be held",
-          f.point->voltage, f.min_point->value, f.point->value, f.target);
+          "at {0:.5g} V the {1} jumps from {2:.5g} {5} to {3:.5g} {5}: {4:.5g} {5} in between cannot be held",
+          f.point->voltage, words.name, f.min_point->value, f.point->value, f.target, words.unit);
     case Finding::too_low_at_first:
-      return fmt::format("{}: at {:.4g} V, the lowest voltage tried, it flaps at {:.4g} Hz already", cannot,
-                         f.point->voltage, f.point->value);
+      return fmt::format("{}: at {:.4g} V, the lowest voltage tried, it {} already", cannot, f.point->voltage,
+                         doing(*f.point));
     case Finding::too_low_at_onset:
-      return fmt::format("{}: from rest it flaps only above {:.4g} V, and there at {:.4g} Hz already", cannot,
-                         f.point->voltage, f.point->value) +
+      return fmt::format("{}: from rest it flaps only above {:.4g} V, and there {} {:.4g} {} already", cannot,
+                         f.point->voltage, words.there, f.point->value, words.unit) +
              below(f);
     case Finding::too_high:
-      return fmt::format("{}: up to {:.4g} V it flaps at {:.4g} Hz at most, at {:.4g} V", cannot, f.last_voltage,
-                         f.max_point->value, f.max_point->voltage);
+      return fmt::format("{}: up to {:.4g} V it {} at most, at {:.4g} V", cannot, f.last_voltage, doing(*f.max_point),
+                         f.max_point->voltage);
     default: return "";
   }
 }
@@ -139,9 +121,7 @@ std::string describe(const SearchFinding& f) {
     text = fmt::format("it flaps at no voltage up to {:.4g} V; there it is {}: {}", f.last_voltage, name_of(f.status),
                        describe(f.evidence));
   } else {
-    text = f.sought == Sought::lift    ? describe_lift(f, inside)
-           : f.sought == Sought::power ? describe_power(f)
-                                       : describe_frequency(f, inside);
+    text = f.sought == Sought::lift ? describe_lift(f, inside) : describe_rate(f, inside);
   }
   if (f.full_duty_voltage) text += fmt::format("; a duty of 1 gives {:.4g} V", *f.full_duty_voltage);
   return text;

@@ -21,7 +21,7 @@ std::string text_scaling(const ScaledDesign& scaled, double factor) {
   for (const ScaledParameter& p : scaled.parameters) {
     text += fmt::format("{:<36}{:>14.6g}{:>14.6g}  {:<12}{}\n", p.key, p.before, p.after, p.unit, p.exponent);
   }
-  if (scaled.parameters.empty()) text += "nothing changes\n";
+  if (scaled.chords) text += fmt::format("{:<78}{}\n", "wing.planform.chords, every radius and chord", 1);
   return text;
 }
 
@@ -44,6 +44,8 @@ const Description<Scaling>& scaling_description() {
   static const Description<Scaling> description =
       Description<Scaling>()
           .always("factor", "1", "of all lengths", [](const Scaling& s) { return s.factor; })
+          .always("chords", "", "radii and chords of a tabulated outline grow with the factor, too",
+                  [](const Scaling& s) { return s.scaled.chords; })
           .parts("parameters", "numbers that change", parameter_description(),
                  [](const Scaling& s) { return s.scaled.parameters; });
   return description;

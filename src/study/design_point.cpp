@@ -1,9 +1,37 @@
 #include "wingbeat/study/design_point.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "wingbeat/study/endurance.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
+namespace {
+
+/// Derivatives of a flight that begins where a hold puts it: by differences, for the hold moves it, too.
+void differentiate_held_flight(const Design<double>& design, DesignPointOptions options,
+                               std::span<const DesignParameter> parameters, const StartUp& start_up,
+                               Endurance& flight) {
+  options.tolerance = std::min(options.tolerance, 1e-8);
+  flight.hover_by_parameter.assign(parameters.size(), absent);
+  flight.by_parameter.assign(parameters.size(), absent);
+  for (std::size_t k = 0; k < parameters.size(); ++k) {
+    const double x = parameters[k].value(design).value_or(absent), step = 1e-4 * std::abs(x);
+    if (!(step > 0.0)) continue;
+    const auto moved = [&](double stated) {
+      Design<double> d = design;
+      parameters[k].set(d, stated);
+      return design_point(d, options, {}, start_up).metrics;
+    };
+    const Metrics<double> above = moved(x + step), below = moved(x - step);
+    const auto slope = [&](Metric m) { return (above[m] - below[m]) / (2.0 * step); };
+    flight.hover_by_parameter[k] = slope(Metric::hover);
+    flight.by_parameter[k] = slope(Metric::endurance);
+  }
+}
+
+}  // namespace
 
 DesignPoint design_point(const Design<double>& given, const DesignPointOptions& options,
                          std::span<const DesignParameter> parameters, const StartUp& start_up) {
@@ -45,9 +73,15 @@ DesignPoint design_point(const Design<double>& given, const DesignPointOptions& 
   point.evidence = orbit.evidence;
   if (orbit.status != FlappingStatus::flapping) return point;
   point.metrics = orbit.metrics;
+  point.voltage = vehicle.voltage;
   Endurance flight;
   if (options.flight.any() && has_battery(design.supply.type)) {
-    flight = endurance_of(design, options.condition, options.tolerance, parameters, options.flight);
+    const bool begins_held = hold && design.supply.throttle == Throttle::fixed;
+    Design<double> flown = design;
+    if (hold) set_voltage(flown.supply, vehicle.voltage);
+    const auto exact = begins_held ? std::span<const DesignParameter>() : parameters;
+    flight = endurance_of(flown, options.condition, options.tolerance, exact, options.flight);
+    if (begins_held) differentiate_held_flight(given, options, parameters, start_up, flight);
     point.metrics[Metric::hover] = flight.hover;
     point.metrics[Metric::endurance] = flight.time;
   }

@@ -1,6 +1,7 @@
 // A vehicle on its battery at one moment of the discharge: how it flaps there, and what the battery gives.
 #pragma once
 
+#include <cmath>
 #include <optional>
 
 #include "study/hover_throttle.hpp"

@@ -1,8 +1,5 @@
 #include "wingbeat/study/hold.hpp"
 
-#include <algorithm>
-
-#include "wingbeat/core/math.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
@@ -20,26 +17,19 @@ double highest_voltage(const Supply<double>& supply) {
   return has_battery(supply.type) ? open_circuit_voltage(supply.battery, supply.battery.charge) : HUGE_VAL;
 }
 
-void set_found(Supply<double>& supply, const Metrics<double>& found) {
-  const double voltage = found[Metric::voltage];
-  if (supply.type == SupplyType::battery) {
-    const double E = open_circuit_voltage(supply.battery, supply.battery.charge);
-    const double sag = source_resistance(supply.battery) * found[Metric::current_mean];
-    supply.duty = std::min(2.0 * voltage / (E + std::sqrt(std::max(square(E) - 4.0 * sag * voltage, 0.0))), 1.0);
-  } else {
-    supply.voltage = supply.type == SupplyType::pwm ? voltage / supply.duty : voltage;
-  }
+void set_voltage(Supply<double>& supply, double voltage) {
+  if (supply.type == SupplyType::battery) supply.duty = voltage / highest_voltage(supply);
+  else supply.voltage = supply.type == SupplyType::pwm ? voltage / supply.duty : voltage;
 }
 
 FrequencySearch find_voltage(const Vehicle<double>& vehicle, const Hold& hold, const SteadyOptions& options,
                              const StartUp& start_up) {
+  const SearchRange range = hold.range == SearchRange::coefficients ? SearchRange::extrapolation : hold.range;
   if (hold.held == Held::frequency) {
-    return find_voltage_for_frequency(vehicle, hold.value, options, start_up, SearchRange::extrapolation,
-                                      hold.highest_voltage);
+    return find_voltage_for_frequency(vehicle, hold.value, options, start_up, range, hold.highest_voltage);
   }
   if (hold.held == Held::power) {
-    return find_voltage_for_power(vehicle, hold.value, options, start_up, SearchRange::extrapolation,
-                                  hold.highest_voltage);
+    return find_voltage_for_power(vehicle, hold.value, options, start_up, range, hold.highest_voltage);
   }
   LiftSearchOptions where;
   where.range = hold.range;

@@ -28,7 +28,7 @@ Design<double> OptimiseProblem::found(const Vector& u, const DesignPoint& point)
   Design<double> d = design(u);
   const std::optional<Hold>& hold = study_.options.hold;
   if (hold && !(hold->held == Held::frequency && set_drive_frequency(d, hold->value))) {
-    set_found(d.supply, point.metrics);
+    set_voltage(d.supply, point.voltage);
   }
   return d;
 }

@@ -4,6 +4,8 @@
 #include <cmath>
 
 #include "wingbeat/ensemble/ensemble.hpp"
+#include "wingbeat/study/design_point.hpp"
+#include "wingbeat/study/run.hpp"
 #include "wingbeat/study/sampling.hpp"
 #include "wingbeat/study/sweep.hpp"
 
@@ -224,7 +226,11 @@ ObjectivePoint reference_of(const ParetoStudy& study, const Problem& problem, co
 
 Design<double> vehicle_of(const ParetoStudy& study, const ParetoDesign& design) {
   Design<double> v = Problem(study, {}, {}).vehicle(design);
-  if (study.hold) set_found(v.supply, design.metrics);
+  if (study.hold && !(study.hold->held == Held::frequency && set_drive_frequency(v, study.hold->value))) {
+    DesignPointOptions options{study.condition, study.hold, study.tolerance};
+    options.hold->range = search_range(study.allow_extrapolation);
+    set_voltage(v.supply, design_point(v, options, {}, start_up_in_time()).voltage);
+  }
   return v;
 }
 

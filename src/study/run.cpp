@@ -26,11 +26,6 @@ void require_choice_of_voltage(const Supply<double>& supply, const char* wanted,
   }
 }
 
-void set_voltage(Supply<double>& supply, double voltage) {
-  if (supply.type == SupplyType::battery) supply.duty = voltage / highest_voltage(supply);
-  else supply.voltage = supply.type == SupplyType::pwm ? voltage / supply.duty : voltage;
-}
-
 void set_duty(Supply<double>& supply, double mean, double lift) {
   const double duty = mean / supply.voltage;
   if (!(duty <= 1.0)) {
@@ -42,29 +37,23 @@ void set_duty(Supply<double>& supply, double mean, double lift) {
   supply.duty = duty;
 }
 
-FrequencySearch find_voltage(const Vehicle<double>& vehicle, const Supply<double>& supply, const RunOptions& options) {
-  SteadyOptions steady;
-  steady.tolerance = options.tolerance;
+/// What is asked for beside the supply as it is.
+std::optional<Hold> hold_of(const RunOptions& options, const Supply<double>& supply) {
   const SearchRange range = options.allow_extrapolation ? SearchRange::extrapolation : SearchRange::domain;
   const double highest = highest_voltage(supply);
-  FrequencySearch search;
-  if (options.lift) {
-    LiftSearchOptions where;
-    where.range = range;
-    where.highest_voltage = highest;
-    const double usual = has_battery(supply.type) ? highest : supply.voltage;
-    if (usual > 0.0) where.nominal = usual;
-    search = find_voltage_for_lift(vehicle, *options.lift, steady, start_up_in_time(), where);
-  } else if (options.power) {
-    search = find_voltage_for_power(vehicle, *options.power, steady, start_up_in_time(), range, highest);
-  } else {
-    search = find_voltage_for_frequency(vehicle, *options.frequency, steady, start_up_in_time(), range, highest);
-  }
-  const bool needs_more = supply.type == SupplyType::pwm && options.lift && search.closest_voltage > supply.voltage;
+  if (options.lift) return Hold{Held::lift, *options.lift, range, highest};
+  if (options.power) return Hold{Held::power, *options.power, range, highest};
+  if (options.frequency) return Hold{Held::frequency, *options.frequency, range, highest};
+  return std::nullopt;
+}
+
+/// Names what a duty of 1 gives where the answer would take more.
+void note_full_duty(const Supply<double>& supply, const Hold& hold, FrequencySearch& search) {
+  const bool needs_more =
+      supply.type == SupplyType::pwm && hold.held == Held::lift && search.closest_voltage > supply.voltage;
   const bool needs_all = supply.type == SupplyType::battery && search.outcome == FrequencyOutcome::too_high;
   if (needs_more) search.finding.full_duty_voltage = supply.voltage;
-  if (needs_all) search.finding.full_duty_voltage = highest;
-  return search;
+  if (needs_all) search.finding.full_duty_voltage = hold.highest_voltage;
 }
 
 void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunResult& result) {
@@ -173,10 +162,16 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   result.metrics.values.fill(absent);
   result.design = design;
   const bool driven = options.frequency && set_drive_frequency(result.design, *options.frequency);
-  if (options.frequency || options.lift || options.power) set_full_duty(result.design.supply);
-  Vehicle<double> vehicle = resolve(result.design, options.condition);
-  if ((options.frequency && !driven) || options.lift || options.power) {
-    result.search = find_voltage(vehicle, supply, options);
+  const std::optional<Hold> hold = driven ? std::nullopt : hold_of(options, supply);
+  Design<double> searched = result.design;
+  if (hold) set_full_duty(searched.supply);
+  if (hold && hold->held == Held::lift) searched.supply.duty = 1.0;  // of pwm the duty is found as well
+  Vehicle<double> vehicle = resolve(searched, options.condition);
+  if (hold) {
+    SteadyOptions steady;
+    steady.tolerance = options.tolerance;
+    result.search = find_voltage(vehicle, *hold, steady, start_up_in_time());
+    note_full_duty(supply, *hold, *result.search);
     if (result.search->outcome != FrequencyOutcome::reached) {
       result.status = result.search->status;
       result.settled = result.status != FlappingStatus::undecided;
@@ -187,7 +182,6 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
     } else {
       set_voltage(result.design.supply, result.search->voltage);
     }
-    if (supply.type == SupplyType::battery_sine) validate(result.design);  // its amplitude may not exceed the battery's
     set_mean_voltage(vehicle, result.search->voltage);
   }
   if (options.method == Method::orbit) {
@@ -199,7 +193,7 @@ RunResult run_design(const Design<double>& design, const RunOptions& options) {
   const bool flies = has_battery(supply.type) && result.status == FlappingStatus::flapping;
   if (options.endurance && flies) {
     const FlightMetrics wanted{true, true, options.allow_extrapolation};
-    const Endurance flight = endurance_of(design, options.condition, options.tolerance, {}, wanted);
+    const Endurance flight = endurance_of(result.design, options.condition, options.tolerance, {}, wanted);
     result.metrics[Metric::hover] = flight.hover;
     result.metrics[Metric::endurance] = flight.time;
   }

@@ -31,7 +31,7 @@ int exponent_of(const ParameterText& parameter) {
 }
 
 bool is_of_wing(std::string_view path) {
-  // The hinges' stiffness and the law of pitch belong to what drives the wings.
+  // The stiffness of hinges belongs to what drives the wings.
   return path.starts_with("wing.") && !path.starts_with("wing.torsion.") && path != "wing.resonance";
 }
 
@@ -39,7 +39,7 @@ bool is_of_wing(std::string_view path) {
 
 ScaledDesign scaled(const Design<double>& design, double factor, ScaledPart part) {
   require(factor >= 1e-3 && factor <= 1e3, "scale", "must lie between 0.001 and 1000", "1", factor);
-  ScaledDesign result{design, {}};
+  ScaledDesign result{design, {}, !design.wing.planform.chord_table.empty()};
   for (const Parameter<double>& parameter : parameter_table<double>()) {
     if (!parameter.get || !parameter.set) continue;
     const std::optional<double> before = parameter.get(design);

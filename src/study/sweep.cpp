@@ -158,16 +158,17 @@ void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t en
     for (std::size_t m = 0; m < kept_.size(); ++m) {
       columns.metrics[m][row] = out.metrics.values[std::size_t(kept_[m])];
     }
-    fly(columns, row);
+    fly(columns, row, members_[n].vehicle.voltage);
   }
 }
 
 /// The metrics of a whole flight, where the sweep selects them.
-void SweepSolver::fly(SweepColumns& columns, std::size_t row) const {
+void SweepSolver::fly(SweepColumns& columns, std::size_t row, double voltage) const {
   const FlightMetrics wanted = flight_metrics(sweep_.options.metrics, sweep_.allow_extrapolation);
   if (!wanted.any()) return;
-  const SweepDesign point = design_at(sweep_, columns.first + row);
+  SweepDesign point = design_at(sweep_, columns.first + row);
   if (!has_battery(point.design.supply.type)) return;
+  if (sweep_.hold) set_voltage(point.design.supply, voltage);
   const Endurance flight = endurance_of(point.design, point.condition, sweep_.options.tolerance, {}, wanted);
   for (std::size_t m = 0; m < kept_.size(); ++m) {
     if (Metric(kept_[m]) == Metric::hover) columns.metrics[m][row] = flight.hover;

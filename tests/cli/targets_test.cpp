@@ -62,7 +62,7 @@ TEST_F(Targets, ThePowerIsFoundByTheVoltage) {
   EXPECT_NEAR(json["power_electrical_w"].get<double>(), 0.5, 1e-6);
   const Outcome much = flapper({"--power", "1 kW"});
   EXPECT_EQ(much.status, 2);
-  EXPECT_THAT(much.err, HasSubstr("--power 1 kW: 1000 W cannot be held: at "));
+  EXPECT_THAT(much.err, HasSubstr("--power 1 kW: 1000 W cannot be reached inside the domain of validity: at "));
   EXPECT_THAT(flapper({"--power", "0 W"}).err, HasSubstr("--power: must be > 0 W"));
   EXPECT_THAT(flapper({"--power", "1 W", "--lift", "1 mN"}).err, HasSubstr("--lift excludes --power"));
 }

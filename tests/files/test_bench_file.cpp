@@ -132,7 +132,8 @@ TEST_F(MessyLog, DecimalComma) {
   expect_same("voltage_V;frequency_Hz;current_mean_mA;lift_mean_mN\n2,0;15,25;120,5;4,903325\n3;22;180;9,80665\n");
   EXPECT_TRUE(notes.decimal_comma);
   expect_same(
-      "voltage_V,frequency_Hz,current_mean_mA,lift_mean_mN\n2,\"15,25\",\"120,5\",\"4,903325\"\n3,22,180,\"9,80665\"\n");
+      "voltage_V,frequency_Hz,current_mean_mA,lift_mean_mN\n2,\"15,25\",\"120,5\",\"4,903325\"\n"
+      "3,22,180,\"9,80665\"\n");
   EXPECT_TRUE(notes.decimal_comma);
   EXPECT_THAT(log_error("voltage_V,frequency_Hz\n2,0,15,25\n3,0,22,0\n"),
               HasSubstr("decimal commas between commas are ambiguous"));
@@ -164,14 +165,16 @@ TEST_F(MessyLog, NamesAndUnitsInUse) {
   EXPECT_EQ(notes.columns[3].name, "lift_mean");
   expect_same("U [mV];f [rpm];I / A;Thrust_gf\n2000;915;0.1205;0.5\n3000;1320;0.18;1\n");
   expect_same(
-      "Supply Voltage [V],Flapping frequency (1/min),Mean current (mA),mean lift [mgf]\n2,915,120.5,500\n3,1320,180,1000\n");
+      "Supply Voltage [V],Flapping frequency (1/min),Mean current (mA),mean lift [mgf]\n2,915,120.5,500\n"
+      "3,1320,180,1000\n");
   expect_same(
       "voltage_V,freq_Hz,Average current (\xC2\xB5"
       "A),lift_kgf\n2,15.25,120500,0.0005\n3,22,180000,0.001\n");
   LogRequest request;
   request.columns = {{"Kraft links (mN)", "lift_mean"}, {"Bemerkung", "ignore"}};
   expect_same(
-      "voltage_V,frequency_Hz,current_mA,Kraft links (mN),Bemerkung\n2,15.25,120.5,4.903325,ok\n3,22,180,9.80665,warm\n",
+      "voltage_V,frequency_Hz,current_mA,Kraft links (mN),Bemerkung\n2,15.25,120.5,4.903325,ok\n"
+      "3,22,180,9.80665,warm\n",
       request);
   EXPECT_EQ(notes.columns[4].name, "");
   request.columns = {{"Kraft", "lift_mean_mN"}};
@@ -196,7 +199,8 @@ TEST_F(MessyLog, OrderRepeatsAndGaps) {
 
 TEST_F(MessyLog, EncodingsRemarksAndLineEnds) {
   const std::string text =
-      "% made by a logger\r\n// second line\r\nvoltage_V,frequency_Hz,current_mean_mA,lift_mean_mN\r\n2,15.25,120.5,4.903325\r\n"
+      "% made by a logger\r\n// second line\r\nvoltage_V,frequency_Hz,current_mean_mA,lift_mean_mN\r\n"
+      "2,15.25,120.5,4.903325\r\n"
       "\r\n# half way\r\n3,22,180,9.80665\r\n";
   expect_same("\xEF\xBB\xBF" + text);
   EXPECT_EQ(notes.remarks, 3);

@@ -8,6 +8,7 @@
 #include <random>
 
 #include "study/battery_design.hpp"
+#include "study/held_differences.hpp"
 #include "wingbeat/cycle/orbit_gradient.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
@@ -16,6 +17,7 @@
 #include "wingbeat/study/endurance.hpp"
 #include "wingbeat/study/ensemble_hold.hpp"
 #include "wingbeat/study/run.hpp"
+#include "wingbeat/study/sweep.hpp"
 
 namespace wingbeat {
 namespace {
@@ -240,7 +242,7 @@ TEST(HoverThrottle, HeldLiftsOfBatteriesInBatchesAreThoseOfOne) {
       EXPECT_NEAR(outcomes[n].metrics[m] / point.metrics[m], 1.0, 1e-6) << metric_info(m).key;
     }
     Supply<double> supply = designs[n].supply;
-    set_found(supply, point.metrics);
+    set_voltage(supply, point.voltage);
     EXPECT_NEAR(supply.duty, duty_to_hover(designs[n], supply.battery.charge), 1e-6);
   }
   EXPECT_GT(held, 15);
@@ -248,31 +250,63 @@ TEST(HoverThrottle, HeldLiftsOfBatteriesInBatchesAreThoseOfOne) {
 }
 
 TEST(HoverThrottle, DerivativesFollowTheDuty) {
-  const Design<double> d = hovering_design();
-  std::vector<DesignParameter> parameters;
-  for (const char* key : {"vehicle.mass", "supply.internal_resistance", "supply.charge", "motor.armature_resistance",
-                          "spring.stiffness"}) {
-    parameters.push_back(design_parameter(key));
-  }
   DesignPointOptions options;
   options.hold = Hold{Held::lift_to_weight, 1.0};
   options.tolerance = 1e-9;
-  const DesignPoint point = design_point(d, options, parameters, start_up_in_time());
-  ASSERT_EQ(point.status, SweepStatus::flapping) << describe(point);
-  for (std::size_t k = 0; k < parameters.size(); ++k) {
-    const double x = *parameters[k].value(d), h = 1e-4 * x;
-    const auto there = [&](double value) {
-      Design<double> moved = d;
-      parameters[k].set(moved, value);
-      return design_point(moved, options, {}, start_up_in_time()).metrics;
-    };
-    const bool full = parameters[k].key == "supply.charge";  // no charge above 1
-    const Metrics<double> b = full ? point.metrics : there(x + h), a = there(x - h);
-    for (const Metric m : {Metric::power_electrical, Metric::frequency, Metric::voltage, Metric::rod_force_peak}) {
-      const double expected = (b[m] - a[m]) / (full ? h : 2.0 * h), scale = std::abs(point.metrics[m] / x);
-      EXPECT_NEAR(point.gradients[k][std::size_t(m)], expected, (full ? 2e-4 : 2e-6) * scale)
-          << parameters[k].key << " " << metric_info(m).key;
-    }
+  expect_held_derivatives(
+      hovering_design(), options,
+      {"vehicle.mass", "supply.internal_resistance", "supply.charge", "motor.armature_resistance", "spring.stiffness"},
+      {Metric::power_electrical, Metric::frequency, Metric::voltage, Metric::rod_force_peak}, 2e-6);
+}
+
+/// The flight at a stated duty, or amplitude, that a bisection of single runs has found to lift `ratio` at the start.
+Endurance flight_from(Design<double> d, double ratio) {
+  d.supply.throttle = Throttle::fixed;
+  Design<double> lighter = d;
+  *lighter.mass *= ratio;
+  d.supply.duty = duty_to_hover(lighter, d.supply.battery.charge);
+  return endurance_of(d, Condition::air, 1e-8, {}, {true, true, true});
+}
+
+// A lift is held at the start; from there a battery of fixed throttle keeps the duty that was found.
+TEST(HoverThrottle, AFlightFromAHeldLiftKeepsTheDutyFound) {
+  for (const double ratio : {1.02, 1.1}) {
+    SCOPED_TRACE(ratio);
+    const Design<double> d = hovering_design();
+    const Endurance expected = flight_from(d, ratio);
+    const Endurance stated = endurance_of(d, Condition::air, 1e-8, {}, {true, true, true});
+    ASSERT_GT(expected.hover, 0.0);
+    ASSERT_GT(std::abs(expected.time / stated.time - 1.0), 1e-2);
+
+    DesignPointOptions options;
+    options.hold = Hold{Held::lift_to_weight, ratio};
+    options.tolerance = 1e-8;
+    options.flight = {true, true, true};
+    const DesignPoint point = expect_held_derivatives(d, options, {"vehicle.mass", "motor.armature_resistance"},
+                                                      {Metric::hover, Metric::endurance}, 1e-3, 1e-3);
+    EXPECT_NEAR(point.metrics[Metric::hover] / expected.hover, 1.0, 1e-5);
+    EXPECT_NEAR(point.metrics[Metric::endurance] / expected.time, 1.0, 1e-5);
+
+    const RunResult run = run_design(d, {.tolerance = 1e-8,
+                                         .lift = ratio * reporting_of(d).mass * standard_gravity,
+                                         .allow_extrapolation = true,
+                                         .endurance = true});
+    EXPECT_NEAR(run.metrics[Metric::hover] / expected.hover, 1.0, 1e-5);
+    EXPECT_NEAR(run.metrics[Metric::endurance] / expected.time, 1.0, 1e-5);
+
+    Sweep sweep;
+    sweep.variants = {{d, Condition::air, true}};
+    sweep.hold = options.hold;
+    sweep.options.tolerance = 1e-8;
+    sweep.options.metrics = {};
+    sweep.options.metrics.set(std::size_t(Metric::hover)).set(std::size_t(Metric::endurance));
+    sweep.allow_extrapolation = true;
+    SweepColumns columns;
+    columns.resize(1, 2);
+    SweepSolver(sweep, start_up_in_time()).solve(columns, 0, 1);
+    const bool hover_first = Metric::hover < Metric::endurance;
+    EXPECT_NEAR(columns.metrics[hover_first ? 0 : 1][0] / expected.hover, 1.0, 1e-5);
+    EXPECT_NEAR(columns.metrics[hover_first ? 1 : 0][0] / expected.time, 1.0, 1e-5);
   }
 }
 

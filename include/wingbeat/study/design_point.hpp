@@ -30,9 +30,10 @@ struct DesignPointOptions {
 struct DesignPoint {
   SweepStatus status = SweepStatus::invalid;
   StatusEvidence evidence;               ///< what shows the status, unless one of the next two does
-  std::optional<SearchFinding> refused;  ///< why a frequency or a lift cannot be held
+  std::optional<SearchFinding> refused;  ///< why a frequency, a lift or a power cannot be held
   std::string error;                     ///< what() of the ParameterError of an invalid design
   Metrics<double> metrics;               ///< all absent unless flapping
+  double voltage = absent;               ///< mean one of its supply, or amplitude; what a hold found [V]
   DomainStatus domain;                   ///< limits of the model that are exceeded; none unless flapping
   DomainExcess domain_excess{};          ///< by how much; only where flapping
   /// Derivatives of domain_excess by each parameter through the metrics alone (domain_excess_slopes); as `gradients`.

@@ -12,7 +12,7 @@ namespace wingbeat {
 struct Hold {
   Held held = Held::frequency;                    ///< not the voltage, which needs no search
   double value = absent;                          ///< > 0 [Hz, N, 1 or W]
-  SearchRange range = SearchRange::coefficients;  ///< where a lift is sought; the others are sought everywhere
+  SearchRange range = SearchRange::coefficients;  ///< of a lift alone; with it the others are sought everywhere
   double highest_voltage = HUGE_VAL;              ///< that the supply can give [V]
 };
 
@@ -31,12 +31,8 @@ void set_full_duty(Supply<double>& supply);
 /// the others, which are what is sought.
 double highest_voltage(const Supply<double>& supply);
 
-/// The supply that gives a motor what a search has found: the mean voltage at its terminals and the mean current of
-/// steady flapping. A battery gives it by the duty D, the smaller one of the two that do:
-/// \f[
-/// \overline{v} = D \left( n E - D\, n R_\mathrm{i}\, \overline{\imath} \right)
-/// \f]
-void set_found(Supply<double>& supply, const Metrics<double>& found);
+/// The supply that gives the mean voltage, or amplitude, that a search has found [V]: a battery by its duty.
+void set_voltage(Supply<double>& supply, double voltage);
 
 /// find_voltage_for_frequency, _for_power or _for_lift; the vehicle's voltage counts as its usual one.
 FrequencySearch find_voltage(const Vehicle<double>& vehicle, const Hold& hold, const SteadyOptions& options,

@@ -22,6 +22,7 @@ struct ScaledParameter {
 struct ScaledDesign {
   Design<double> design;
   std::vector<ScaledParameter> parameters;  ///< that change, in the order of the reference
+  bool chords = false;                      ///< radii and chords of a tabulated outline grow with the factor, too
 };
 
 /// A design `factor` times as large, > 0. All lengths grow with the factor. Densities, stresses, voltages and speeds

@@ -104,7 +104,7 @@ class SweepSolver {
 
  private:
   void gather(SweepColumns& columns, std::size_t begin, std::size_t end);
-  void fly(SweepColumns& columns, std::size_t row) const;
+  void fly(SweepColumns& columns, std::size_t row, double voltage) const;
 
   const Sweep& sweep_;
   StartUp start_up_;
