@@ -36,6 +36,7 @@ void add_linearise(CLI::App& program, Action& action);
 void add_reproduce(CLI::App& program, Action& action);
 void add_new(CLI::App& program, Action& action);
 void add_scale(CLI::App& program, Action& action);
+void add_synthesise(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);
 void add_metrics(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);

@@ -7,18 +7,19 @@
 #include "wingbeat/vehicle/drive.hpp"
 
 namespace wingbeat {
+namespace {
 
-std::string drawn_mechanism(const Design<double>& design, double stroke_amplitude, PlotFormat format) {
-  const Vehicle<double> vehicle = resolve(design);
-  StrokeRange stroke{-stroke_amplitude, stroke_amplitude};
-  if (drive_of(vehicle).stroke_is_fixed) {
-    stroke = {infinity, -infinity};
-    for (int n = 0; n < 360; ++n) {
-      const double theta = two_pi * n / 360.0;
-      const double beta = stroke_angle(crank_kinematics(vehicle.transmission, std::sin(theta), std::cos(theta)));
-      stroke = {std::min(stroke.low, beta), std::max(stroke.high, beta)};
-    }
+StrokeRange stroke_of(const AnyTransmission<double>& t) {
+  StrokeRange stroke{infinity, -infinity};
+  for (int n = 0; n < 360; ++n) {
+    const double theta = two_pi * n / 360.0;
+    const double beta = stroke_angle(crank_kinematics(t, std::sin(theta), std::cos(theta)));
+    stroke = {std::min(stroke.low, beta), std::max(stroke.high, beta)};
   }
+  return stroke;
+}
+
+std::string drawn(const Vehicle<double>& vehicle, const StrokeRange& stroke, PlotFormat format) {
   const double width = 3.4, height = vehicle.transmission.type == TransmissionType::tabulated ? 2.0 : 1.8;
   const bool law = vehicle.transmission.type == TransmissionType::tabulated;
   Figure figure(format, width, height);
@@ -33,6 +34,21 @@ std::string drawn_mechanism(const Design<double>& design, double stroke_amplitud
                         .page_height = height});
   figure.add("unset multiplot\n");
   return drawing_of(figure.script());
+}
+
+}  // namespace
+
+std::string drawn_mechanism(const Design<double>& design, double stroke_amplitude, PlotFormat format) {
+  const Vehicle<double> vehicle = resolve(design);
+  const bool fixed = drive_of(vehicle).stroke_is_fixed;
+  const StrokeRange stroke = fixed ? stroke_of(vehicle.transmission) : StrokeRange{-stroke_amplitude, stroke_amplitude};
+  return drawn(vehicle, stroke, format);
+}
+
+std::string drawn_mechanism(const TransmissionDesign<double>& transmission, PlotFormat format) {
+  Vehicle<double> vehicle{};
+  vehicle.transmission = transmission_from<double>(transmission);
+  return drawn(vehicle, stroke_of(vehicle.transmission), format);
 }
 
 }  // namespace wingbeat

@@ -23,7 +23,7 @@ Json optimise_schema() {
        schema::with_text(described::front_schema(), "several objectives")});
 }
 
-constexpr std::array<std::pair<std::string_view, Json (*)()>, 14> schemas = {
+constexpr std::array<std::pair<std::string_view, Json (*)()>, 15> schemas = {
     {{"run", described::run_schema},
      {"compare", described::comparison_schema},
      {"sweep", described::sweep_schema},
@@ -36,6 +36,7 @@ constexpr std::array<std::pair<std::string_view, Json (*)()>, 14> schemas = {
      {"linearise", described::control_schema},
      {"reproduce", described::claims_schema},
      {"scale", described::scaling_schema},
+     {"synthesise", described::synthesis_schema},
      {"keys", described::keys_schema},
      {"metrics", described::metrics_schema}}};
 

@@ -47,6 +47,9 @@ void plot_cycle(std::span<const WaveformRow> rows, const Design<double>& design,
 /// direct drive; cranks have their own. The content of a file; throws like plot_cycle.
 std::string drawn_mechanism(const Design<double>& design, double stroke_amplitude, PlotFormat format);
 
+/// Of links alone, which validate() takes: a slider-crank, a four-bar or a stroke table.
+std::string drawn_mechanism(const TransmissionDesign<double>& transmission, PlotFormat format);
+
 /// One case of a power breakdown.
 struct PowerBar {
   std::string label;
