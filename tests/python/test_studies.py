@@ -80,6 +80,63 @@ class Studies(unittest.TestCase):
         self.assertEqual(dict(found), dict(wb.fit(file, profiles=False, threads=1)))
         self.assertEqual(found.vehicle is None, "misfit" in found.get("status", ""))
 
+    def bench(self, logs):
+        text = (DATA / "bench" / "flapper.toml").read_text()
+        tables = {"parameter": [], "deviation": {"default": {"relative": 0.01}, "lift_mean": {"relative": 0.02}}}
+        for part in text.split("[[parameter]]")[1:]:
+            keys = dict(line.split("=", 1) for line in part.split("[deviation]")[0].splitlines() if "=" in line)
+            keys = {key.strip(): value.split("#")[0].strip().strip('"') for key, value in keys.items()}
+            tables["parameter"].append(keys)
+        tables["log"] = [{"condition": name, "springs": False, **log} for name, log in logs.items()]
+        return tables
+
+    def test_a_fit_of_frames_is_that_of_files(self):
+        import numpy as np
+        import pandas
+        import xarray
+
+        vehicle = wb.read(DATA / "designs" / "friction2022-springs.toml")
+        folder = DATA / "bench"
+        air = pandas.read_csv(folder / "air.csv", comment="#")
+        vacuum = pandas.read_csv(folder / "vacuum.csv", comment="#")
+        wingless = pandas.read_csv(folder / "wingless.csv", comment="#")
+        files = {name: {"file": str(folder / f"{name}.csv")} for name in ("air", "vacuum", "wingless")}
+        expected = wb.fit(self.bench(files), vehicle=vehicle, profiles=False)
+        frames = {
+            "air": {"data": air.iloc[::-1].assign(note="a remark"), "columns": {"note": "ignore"}},
+            "vacuum": {"data": xarray.Dataset({name: ("row", vacuum[name]) for name in vacuum})},
+            "wingless": {"data": {name: wingless[name].to_numpy() for name in wingless}},
+        }
+        frames["vacuum"]["columns"] = {"row": "ignore"}
+        found = wb.fit(self.bench(frames), vehicle=vehicle, profiles=False)
+        for ours, theirs in zip(found["parameters"], expected["parameters"]):
+            self.assertEqual(ours["key"], theirs["key"])
+            self.assertAlmostEqual(ours["value"] / theirs["value"], 1.0, 9)
+        program = wb.fit(folder / "flapper.toml", profiles=False)
+        self.assertEqual([p["value"] for p in program["parameters"]], [p["value"] for p in expected["parameters"]])
+        air.loc[1, air.columns[-1]] = np.nan
+        fewer = wb.fit(self.bench({**files, "air": {"data": air}}), vehicle=vehicle, profiles=False)
+        self.assertNotEqual(fewer["parameters"][0]["value"], expected["parameters"][0]["value"])
+        self.assertEqual(len(fewer["residuals"]), len(expected["residuals"]) - 1)
+
+    def test_a_frame_that_cannot_be_used_is_named(self):
+        vehicle = wb.read(DATA / "designs" / "friction2022-springs.toml")
+
+        def refused(log, pattern, error=wb.InputError):
+            with self.assertRaisesRegex(error, pattern):
+                wb.fit(self.bench({"air": log}), vehicle=vehicle, profiles=False)
+
+        good = {"voltage_V": [2.0, 3.0], "frequency_Hz": [15.0, 22.0]}
+        refused({"data": {**good, "current_mean_mA": [1.0]}}, r"^log\[0\].data: columns have different lengths$")
+        refused({"data": {**good, "current_mean_mA": [120.0, -1.0]}}, r"^log\[0\].data, row 1: ")
+        refused({"data": {"voltage_V": [2.0], "force": [1.0]}}, r"^log\[0\].data, column names: .*force")
+        refused({"data": good, "file": "air.csv"}, "is given beside a file$")
+        refused({"data": 3.0}, r"^log\[0\].data: expected a DataFrame", TypeError)
+        refused({"data": {"voltage_V": 2.0}}, r"^log\[0\].data\['voltage_V'\]: expected an array", TypeError)
+        refused({"data": {"voltage_V": [1j]}}, "expected numbers, got complex$", TypeError)
+        with self.assertRaisesRegex(TypeError, "a bench file names its vehicle"):
+            wb.fit(DATA / "bench" / "flapper.toml", vehicle=vehicle)
+
     @unittest.skipUnless(PROGRAM, "needs the program")
     def test_a_tolerance_study_is_the_programs(self):
         file = DATA / "studies" / "tolerance-hover.toml"

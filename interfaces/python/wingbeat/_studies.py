@@ -15,6 +15,7 @@ from . import _core
 from ._arguments import (
     callback, flag, mapping, optional_number, path, refused, text, threads_of, wrong_type,
 )
+from ._bench import logs_in, naming_rows
 from ._operations import operation
 from ._progress import shown
 from ._study import without_place
@@ -135,25 +136,27 @@ def values_of(values: Mapping[str, Any] | None) -> list[str]:
 
 
 @contextmanager
-def _file_of(study: Study, vehicle: Vehicle | None) -> Iterator[bytes]:
-    """The study as a file; of a dict, beside its vehicle in a temporary folder."""
+def _file_of(study: Study, vehicle: Vehicle | None, section: str = "study") -> Iterator[bytes]:
+    """The study as a file; of a dict, beside its vehicle in a temporary folder. `section` names the vehicle."""
     if not isinstance(study, Mapping):
         if not isinstance(study, (str, bytes, os.PathLike)):
-            raise wrong_type("study", "the path of a study file, or a dict of its tables", study)
+            raise wrong_type(section, f"the path of a {section} file, or a dict of its tables", study)
         if vehicle is not None:
-            raise TypeError("a study file names its vehicle; a vehicle can be given with a dict")
-        yield path("study", study)
+            raise TypeError(f"a {section} file names its vehicle; a vehicle can be given with a dict")
+        yield path(section, study)
         return
-    tables: dict[str, Any] = {**mapping("study", study)}
-    tables["study"] = dict(mapping("study.study", study.get("study", {})))
-    with tempfile.TemporaryDirectory(prefix="wingbeat-") as folder:
+    tables: dict[str, Any] = {**mapping(section, study)}
+    tables[section] = dict(mapping(f"{section}.{section}", study.get(section, {})))
+    with tempfile.TemporaryDirectory(prefix="wingbeat-") as folder, naming_rows(folder):
         if vehicle is not None:
-            if "vehicle" in tables["study"]:
-                raise refused("study.vehicle", "is given in the study and beside it")
+            if "vehicle" in tables[section]:
+                raise refused(f"{section}.vehicle", f"is given in the {section} and beside it")
             file = pathlib.Path(folder) / "vehicle.toml"
             file.write_text(vehicle_of(vehicle).to_toml(), encoding="utf-8")
-            tables["study"]["vehicle"] = str(file)
-        name = pathlib.Path(folder) / "study.toml"
+            tables[section]["vehicle"] = str(file)
+        if section == "bench" and "log" in tables:
+            tables["log"] = logs_in(pathlib.Path(folder), tables["log"])
+        name = pathlib.Path(folder) / f"{section}.toml"
         # The members of a table in braces are lines without them.
         lines = (_core.toml({key: plain(value, key)})[1:-1] for key, value in tables.items())
         name.write_text("".join(f"{line}\n" for line in lines), encoding="utf-8")
@@ -233,8 +236,9 @@ def identify_motor(
 
 
 def fit(
-    bench: str | os.PathLike[str],
+    bench: Study,
     *,
+    vehicle: Vehicle | None = None,
     values: Mapping[str, Any] | None = None,
     profiles: bool = True,
     compare_friction: bool = False,
@@ -244,8 +248,11 @@ def fit(
 
     Parameters
     ----------
-    bench : bench file (TOML), which names the vehicle file and the logs
-    values : keys of the vehicle with other values than in its file
+    bench : bench file (TOML), which names the vehicle file and the logs, or a dict of its tables. There a log may have
+        `data`, a DataFrame, a Dataset or a dict of columns, for its `file`: columns are named as in files, a NaN or NA is
+        left out
+    vehicle : of a bench that is a dict
+    values : keys of the vehicle with other values
     profiles : False: intervals from the curvature alone, which is faster
     compare_friction : fits one law of friction after the other as well
     threads : at most so many; 0: one for each core. What is found does not depend on it
@@ -265,16 +272,18 @@ def fit(
     >>> found = wb.fit("data/bench/flapper.toml", profiles=False)
     >>> f"{1e3 * found.vehicle.friction.radius:.2f} mm"
     '2.48 mm'
+    >>> air = {"voltage_V": [2, 3, 4], "frequency_Hz": [15.1, 21.9, 27.7], "current_mean_mA": [137, 203, 268]}
+    >>> bench = {
+    ...     "parameter": [{"key": "friction.radius", "lower": 0, "upper": "8 mm"}],
+    ...     "log": [{"data": air, "condition": "air"}],
+    ... }
+    >>> found = wb.fit(bench, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> found["converged"]
+    True
     """
-    return Found(
-        _core.fit(
-            path("bench", bench),
-            values_of(values),
-            flag("profiles", profiles),
-            flag("compare_friction", compare_friction),
-            threads_of(threads),
-        )
-    )
+    options = flag("profiles", profiles), flag("compare_friction", compare_friction), threads_of(threads)
+    with _file_of(bench, vehicle, "bench") as file:
+        return Found(_core.fit(file, values_of(values), *options))
 
 
 def tolerance(
