@@ -8,6 +8,7 @@
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/describe.hpp"
+#include "wingbeat/study/hold.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat::app {
@@ -59,6 +60,10 @@ void add_operating_point(CLI::App* command, OperatingPointArguments& a) {
       ->excludes(frequency)
       ->excludes(lift)
       ->excludes(ratio);
+  command
+      ->add_option("--angle-of-attack", a.angle_of_attack,
+                   "Find the pitch_coefficient that leads to this angle at mid-stroke, as \"45 deg\"")
+      ->type_name("ANGLE");
   add_choice<Condition>(command, "--condition", a.condition, "air (default), vacuum or wingless", "CONDITION");
 }
 
@@ -77,13 +82,20 @@ Design<double> read_operating_point(const OperatingPointArguments& arguments, Ru
     options.power = quantity_of("--power", arguments.power, "W");
     if (!(*options.power > 0.0)) throw InputError("--power", 0, 0, "", "must be > 0 W");
   }
+  if (!arguments.angle_of_attack.empty()) {
+    options.angle_of_attack = quantity_of("--angle-of-attack", arguments.angle_of_attack, "rad");
+    if (!(*options.angle_of_attack > 0.0 && *options.angle_of_attack < 0.5 * pi)) {
+      throw InputError("--angle-of-attack", 0, 0, "", "must be > 0 deg, < 90 deg");
+    }
+  }
   Design<double> design = read_design(arguments.vehicle, arguments.overrides);
   if (!arguments.lift_to_weight.empty()) {
     const double ratio = quantity_of("--lift-to-weight", arguments.lift_to_weight, "1");
     if (!(ratio > 0.0)) throw InputError("--lift-to-weight", 0, 0, "", "must be > 0");
-    const std::optional<double> mass = total_mass(design);
-    if (!mass) throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
-    options.lift = ratio * *mass * standard_gravity;
+    options.lift = held_lift({Held::lift_to_weight, ratio}, reporting_of(design));
+    if (std::isnan(*options.lift)) {
+      throw InputError("--lift-to-weight", 0, 0, "", "needs vehicle.mass, which the vehicle does not give");
+    }
   }
   if (!arguments.voltage.empty()) apply_voltage(design.supply, arguments.voltage);
   return design;

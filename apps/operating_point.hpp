@@ -12,7 +12,7 @@ namespace wingbeat::app {
 struct OperatingPointArguments {
   std::string vehicle;
   std::vector<std::string> overrides;
-  std::string voltage, frequency, lift, lift_to_weight, power;
+  std::string voltage, frequency, lift, lift_to_weight, power, angle_of_attack;
   std::string condition = "air";
   bool allow_extrapolation = false;
 };

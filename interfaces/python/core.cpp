@@ -166,7 +166,8 @@ bool unreached(const RunResult& result) {
 
 py::dict run(const Design<double>& design, const std::string& condition, const std::string& method, double tolerance,
              std::optional<double> frequency, std::optional<double> lift, std::optional<double> lift_to_weight,
-             std::optional<double> power, bool allow_extrapolation, int points, bool endurance) {
+             std::optional<double> power, bool allow_extrapolation, int points, bool endurance,
+             std::optional<double> angle_of_attack) {
   RunOptions options;
   options.condition = choice<Condition>("condition", condition);
   options.method = choice<Method>("method", method);
@@ -174,6 +175,7 @@ py::dict run(const Design<double>& design, const std::string& condition, const s
   options.frequency = frequency;
   options.lift = lift;
   options.power = power;
+  options.angle_of_attack = angle_of_attack;
   if (lift_to_weight) {
     require(*lift_to_weight > 0.0, "lift_to_weight", "must be > 0", "1", *lift_to_weight);
     const Reporting reporting = reporting_of(design);
@@ -348,7 +350,7 @@ PYBIND11_MODULE(_core, m) {
   m.def("quantity", &quantity);
   m.def("quantity_example", [](const std::string& unit) { return quantity_example(unit); });
   m.def("run", &run, "design"_a, "condition"_a, "method"_a, "tolerance"_a, "frequency"_a, "lift"_a, "lift_to_weight"_a,
-        "power"_a, "allow_extrapolation"_a, "points"_a, "endurance"_a);
+        "power"_a, "allow_extrapolation"_a, "points"_a, "endurance"_a, "angle_of_attack"_a = py::none());
   m.def("gradient", &differentiate, "design"_a, "keys"_a, "condition"_a, "tolerance"_a, "held"_a, "held_value"_a,
         "allow_extrapolation"_a, "endurance"_a);
   m.def("mechanism_svg", &mechanism_svg, "design"_a, "stroke_amplitude"_a, py::call_guard<Left>());

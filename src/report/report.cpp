@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iterator>
 #include <map>
@@ -136,6 +137,25 @@ void start_up_group(Table& table, const TransientResult& s, bool flapping) {
   }
   table.line("changes of the rod force's sign", fmt::format("{}", counts[Kind::force_sign_change]));
   table.line("standstills", fmt::format("{}", counts[Kind::standstill]));
+}
+
+/// What the angle at mid-stroke is worth under the pitch law, where that is less than half of the best. For a given
+/// lift the aerodynamic power grows with C_D / C_L^(3/2).
+std::string pitch_remark(const RunResult& result) {
+  const double angle = result.metrics[Metric::angle_of_attack_min] / degrees_per_radian;
+  if (!follows_pitch_law(result.design) || !std::isfinite(angle)) return "";
+  const ForceCoefficients<double>& c = result.design.aerodynamics.coefficients;
+  const auto lift_per_power = [&](double alpha) {
+    return std::pow(std::max(lift_coefficient(c, alpha), 0.0), 1.5) / std::max(drag_coefficient(c, alpha), 1e-12);
+  };
+  double best = 0.0, best_angle = 0.0;
+  for (int degree = 5; degree <= 90; ++degree) {
+    const double here = lift_per_power(degree / degrees_per_radian);
+    if (here > best) best = here, best_angle = degree;
+  }
+  const double share = lift_per_power(angle) / best;
+  if (!(share < 0.5)) return "";
+  return fmt::format("{:.0f} % of the best lift per power, at {:.0f} deg", 100.0 * share, best_angle);
 }
 
 }  // namespace
@@ -281,7 +301,9 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
   table.metric("mean rod force, magnitude", Metric::rod_force_mean, "N");
   table.angle("stroke amplitude", degrees_per_radian * m[Metric::stroke_amplitude], "half peak to peak");
   table.metric("peak flapping velocity", Metric::flapping_velocity_peak, "rad/s");
-  table.angle("smallest angle of attack", m[Metric::angle_of_attack_min]);
+  table.angle("smallest angle of attack", m[Metric::angle_of_attack_min], pitch_remark(result));
+  if (result.pitch_coefficient)
+    table.line("pitch_coefficient", readable(*result.pitch_coefficient, "s"), "that was found");
   if (std::isfinite(m[Metric::reynolds_number])) {
     table.line("Reynolds number", fmt::format("{:.0f}", m[Metric::reynolds_number]),
                "mean chord, mean speed of the tips");

@@ -110,6 +110,7 @@ const Description<RunResult>& run_description() {
                 return switched ? std::optional(r.design.supply.duty) : std::nullopt;
               },
               schema::any_number)
+          .sometimes("pitch_coefficient_s", "s", "C_alpha that was found for an angle of attack", &R::pitch_coefficient)
           .sometimes_part("start_up", "of a run simulated from rest", start_up_description(), &R::start_up);
   return description;
 }

@@ -33,6 +33,9 @@ struct RunOptions {
   /// battery both are reached by the duty.
   std::optional<double> lift = {};
   std::optional<double> power = {};  ///< [W]; given instead of both: the same for the mean electrical power
+  /// [rad], > 0, < pi/2; given: C_alpha is replaced by the one that leads to this least angle of attack of the cycle,
+  /// which the wings have at mid-stroke
+  std::optional<double> angle_of_attack = {};
   bool allow_extrapolation = false;  ///< a search for a frequency, a lift or a power may leave the model's domain
   int waveform_rows = 0;             ///< instants of one cycle to return, both ends included; 0: none
   bool endurance = false;            ///< of a vehicle on a battery: Metric::hover and Metric::endurance, too
@@ -56,13 +59,14 @@ struct RunResult {
   solver::PeriodicSummary orbit;            ///< of Method::orbit
   std::optional<TransientResult> start_up;  ///< of Method::transient
   std::optional<FrequencySearch> search;    ///< where a frequency or a lift was asked for
+  std::optional<double> pitch_coefficient;  ///< C_alpha that was found for an angle of attack [s]
   std::optional<double> mean_voltage;       ///< of a pwm supply, which Method::orbit took for constant [V]
   Design<double> design;                    ///< as computed: with the voltage or duty that was found
 };
 
 /// Computes one validated design. Throws ParameterError for a crank on a sine supply where Method::orbit, a frequency
-/// or a lift is asked for (it has no periodic orbit in crank angle), for a duty of pwm above 1 and for options out of
-/// range.
+/// or a lift is asked for (it has no periodic orbit in crank angle), for a duty of pwm above 1, for options out of
+/// range, and for an angle of attack that no C_alpha leads to.
 RunResult run_design(const Design<double>& design, const RunOptions& options = {});
 
 }  // namespace wingbeat

@@ -128,7 +128,8 @@ class RunResult(WithMetrics):
         if self._cycle is None:
             if self.status != "flapping":
                 raise ValueError(f"there is no cycle: {self.evidence}")
-            options: dict[str, Any] = {**self._options, **dict.fromkeys(HELD), "points": CYCLE_POINTS, "endurance": False}
+            options: dict[str, Any] = {**self._options, **dict.fromkeys(HELD), "angle_of_attack": None}
+            options |= {"points": CYCLE_POINTS, "endurance": False}
             self._cycle = _waveform(_core.run(self.vehicle._design, **options)["cycle"])
         return self._cycle
 
@@ -223,6 +224,7 @@ def solve(
     lift: float | str | None = None,
     lift_to_weight: float | None = None,
     power: float | str | None = None,
+    angle_of_attack: float | str | None = None,
     condition: str = "air",
     method: str = "orbit",
     tolerance: float = 1e-6,
@@ -243,6 +245,7 @@ def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult 
     lift : [N], in place of either: the voltage (pwm: the duty) is found that yields this mean lift
     lift_to_weight : the same for the lift over the weight; 1: hover
     power : [W], the same for the mean electrical power
+    angle_of_attack : [rad], at mid-stroke: the aerodynamics.pitch_coefficient is found that leads to it
     condition : "air", "vacuum" or "wingless"
     method : "orbit", or "transient": simulated from rest
     tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
@@ -283,6 +286,7 @@ def _solve(
     lift: float | str | None = None,
     lift_to_weight: float | None = None,
     power: float | str | None = None,
+    angle_of_attack: float | str | None = None,
     condition: str = "air",
     method: str = "orbit",
     tolerance: float = 1e-6,
@@ -298,6 +302,7 @@ def _solve(
         "lift": optional_number("lift", lift, HELD["lift"]),
         "lift_to_weight": optional_number("lift_to_weight", lift_to_weight, HELD["lift_to_weight"]),
         "power": optional_number("power", power, HELD["power"]),
+        "angle_of_attack": optional_number("angle_of_attack", angle_of_attack, "rad"),
         "allow_extrapolation": flag("allow_extrapolation", allow_extrapolation),
         "points": 0,
         "endurance": flag("endurance", endurance),
@@ -305,7 +310,7 @@ def _solve(
     if voltage is not None:
         vehicle = vehicle.replace({"supply.voltage": voltage})
     found = _core.run(vehicle._design, **options)
-    if any(options[name] is not None for name in HELD):
+    if any(options[name] is not None for name in (*HELD, "angle_of_attack")):
         vehicle = type(vehicle)._of(found["design"])
     return RunResult(found, vehicle, options)
 

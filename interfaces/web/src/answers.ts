@@ -136,6 +136,8 @@ export type Report = {
   endurance_s: number | null;
   /** of a pwm supply or a battery */
   supply_duty?: number;
+  /** C_alpha that was found for an angle of attack [s] */
+  pitch_coefficient_s?: number | null;
   /** of a run simulated from rest */
   start_up?: {
     /** false where time, cycles or steps ran out first */

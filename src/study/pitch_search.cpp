@@ -1,0 +1,80 @@
+#include "study/pitch_search.hpp"
+
+#include <boost/math/tools/roots.hpp>
+#include <cmath>
+#include <optional>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/status.hpp"
+#include "wingbeat/core/text.hpp"
+
+namespace wingbeat::detail {
+namespace {
+
+/// Thrown through a search for a zero by a run that has no angle of attack.
+struct NoAngle {
+  RunResult result;
+};
+
+bool flaps_as_asked(const RunResult& r) {
+  return std::isfinite(r.metrics[Metric::angle_of_attack_min]) &&
+         (!r.search || r.search->outcome == FrequencyOutcome::reached);
+}
+
+void require_pitch_law(const Design<double>& design, const RunOptions& options) {
+  const auto refuse = [](const char* why) { throw ParameterError("angle_of_attack", why); };
+  if (!follows_pitch_law(design)) refuse("follows from the hinge or the torsion of these wings: no C_alpha is sought");
+  if (design.aerodynamics.angle_of_attack_min) {
+    refuse("is held by aerodynamics.angle_of_attack_min: no C_alpha is sought beside a stop");
+  }
+  if (options.condition != Condition::air) refuse("is that of wings in air");
+  require(*options.angle_of_attack > 0.0 && *options.angle_of_attack < 0.5 * pi, "angle_of_attack", "must be > 0, < 90",
+          "deg", degrees_per_radian * *options.angle_of_attack);
+}
+
+}  // namespace
+
+RunResult run_at_angle_of_attack(Design<double> design, RunOptions options) {
+  require_pitch_law(design, options);
+  const double wanted = degrees_per_radian * *options.angle_of_attack;
+  options.angle_of_attack.reset();
+  RunOptions trial = options;
+  trial.waveform_rows = 0;
+  trial.endurance = false;
+  const auto run_with = [&](double C, const RunOptions& how) {
+    design.aerodynamics.pitch_coefficient = C;
+    RunResult r = run_design(design, how);
+    if (!flaps_as_asked(r)) throw NoAngle{std::move(r)};
+    return r;
+  };
+  try {
+    // The speed hardly depends on how the wings pitch: alpha = pi/2 - C_alpha |beta'| at the peak is near already.
+    const auto C_at_peak = [&](const RunResult& r) {
+      return (0.5 * pi - wanted / degrees_per_radian) / r.metrics[Metric::flapping_velocity_peak];
+    };
+    const double given = design.aerodynamics.pitch_coefficient;
+    double C = C_at_peak(run_with(given > 0.0 ? given : 5e-3, trial));
+    C = C_at_peak(run_with(C, trial));
+    const auto excess = [&](double log_C) {
+      return run_with(std::exp(log_C), trial).metrics[Metric::angle_of_attack_min] - wanted;
+    };
+    double low = std::log(C) - 0.01, high = std::log(C) + 0.01;
+    double at_low = excess(low), at_high = excess(high);
+    for (double step = 0.02; at_low < 0.0 && step < 4.0; step *= 2.0) at_low = excess(low -= step);
+    for (double step = 0.02; at_high > 0.0 && step < 4.0; step *= 2.0) at_high = excess(high += step);
+    if (at_low < 0.0 || at_high > 0.0) {
+      throw ParameterError("angle_of_attack", format("no C_alpha leads to %.4g deg at mid-stroke", wanted));
+    }
+    std::uintmax_t rounds = 60;
+    const auto found = boost::math::tools::toms748_solve(
+        excess, low, high, at_low, at_high, [&](double a, double b) { return b - a < 1e-2 * options.tolerance; },
+        rounds);
+    RunResult result = run_with(std::exp(0.5 * (found.first + found.second)), options);
+    result.pitch_coefficient = design.aerodynamics.pitch_coefficient;
+    return result;
+  } catch (NoAngle& none) {
+    return std::move(none.result);
+  }
+}
+
+}  // namespace wingbeat::detail
