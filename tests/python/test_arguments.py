@@ -109,7 +109,7 @@ class Types(Refusals):
             (lambda: wb.Vehicle.from_toml(3), "toml: expected a text, got int"),
             (lambda: wb.Vehicle("friction2022"), "values: expected a dict of keys, got str; wingbeat.read reads files"),
             (lambda: wb.read(3), "file: expected a path or a file open for reading text, got int"),
-            (lambda: wb.fit(3), "bench: expected a path, got int"),
+            (lambda: wb.fit(3), "bench: expected the path of a bench file, or a dict of its tables, got int"),
             (lambda: wb.identify_motor(None), "sheet: expected a path, got NoneType"),
             (lambda: wb.open_dataset(3), "file: expected a path, got int"),
             (lambda: wb.optimise(3), "study: expected the path of a study file, or a dict of its tables, got int"),

@@ -97,6 +97,19 @@ class Solve(unittest.TestCase):
         self.assertEqual(out_of_reach.status, "unreached")
         self.assertIn("cannot be reached", out_of_reach.evidence)
 
+    def test_an_angle_of_attack_at_mid_stroke_is_reached(self):
+        result = reference().solve(angle_of_attack="45 deg", lift="10 mN", tolerance=1e-8)
+        self.assertAlmostEqual(float(result.angle_of_attack_min), 45.0, 4)
+        self.assertAlmostEqual(float(result.lift_mean) / 0.01, 1.0, 6)
+        wings = result.vehicle.aerodynamics
+        self.assertNotEqual(wings.pitch_coefficient, reference().aerodynamics.pitch_coefficient)
+        again = result.vehicle.solve(tolerance=1e-8)
+        self.assertAlmostEqual(float(again.angle_of_attack_min), 45.0, 4)
+        self.assertAlmostEqual(float(result.cycle.angle_of_attack.min()), 45.0, 2)
+        self.assertTrue(abs(result.gradient("power_electrical", "aerodynamics.pitch_coefficient")) > 0)
+        with self.assertRaisesRegex(wb.InputError, "^angle_of_attack: must be > 0, < 90"):
+            reference().solve(angle_of_attack="95 deg")
+
     def test_a_cycle_has_units_and_closes(self):
         result = reference().solve(tolerance=1e-9)
         cycle = result.cycle

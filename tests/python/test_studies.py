@@ -117,7 +117,7 @@ class Studies(unittest.TestCase):
         air.loc[1, air.columns[-1]] = np.nan
         fewer = wb.fit(self.bench({**files, "air": {"data": air}}), vehicle=vehicle, profiles=False)
         self.assertNotEqual(fewer["parameters"][0]["value"], expected["parameters"][0]["value"])
-        self.assertEqual(len(fewer["residuals"]), len(expected["residuals"]) - 1)
+        self.assertEqual(len(fewer["points"]), len(expected["points"]) - 1)
 
     def test_a_frame_that_cannot_be_used_is_named(self):
         vehicle = wb.read(DATA / "designs" / "friction2022-springs.toml")

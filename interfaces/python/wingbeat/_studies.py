@@ -275,6 +275,7 @@ def fit(
     >>> air = {"voltage_V": [2, 3, 4], "frequency_Hz": [15.1, 21.9, 27.7], "current_mean_mA": [137, 203, 268]}
     >>> bench = {
     ...     "parameter": [{"key": "friction.radius", "lower": 0, "upper": "8 mm"}],
+    ...     "deviation": {"default": {"relative": 0.01}},
     ...     "log": [{"data": air, "condition": "air"}],
     ... }
     >>> found = wb.fit(bench, vehicle=wb.read("data/designs/friction2022.toml"))
