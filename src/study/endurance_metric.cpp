@@ -1,13 +1,17 @@
 #include <algorithm>
-#include <boost/math/quadrature/gauss.hpp>
 #include <cmath>
 
+#include "study/throttled_gradient.hpp"
+#include "study/voltage_nodes.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/study/endurance.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 namespace {
+
+using detail::FlightEvent;
+using detail::VoltageNodes;
 
 EnduranceOptions flight_options(Condition condition, double tolerance, bool allow_extrapolation) {
   // Rows are asked for only to find the end of the flight.
@@ -23,57 +27,6 @@ EnduranceResult flight_of(Design<double> design, Condition condition, double tol
   if (!wanted.hover && design.supply.throttle == Throttle::fixed) design.mass.reset();
   return simulate_discharge(design, flight_options(condition, tolerance, wanted.allow_extrapolation));
 }
-
-/// Interpolation over open-circuit voltages at Chebyshev's points between two of them.
-class VoltageNodes {
- public:
-  VoltageNodes(double low, double high) {
-    const int last = high > low ? 10 : 0;
-    for (int j = 0; j <= last; ++j) {
-      voltages_.push_back(last == 0 ? low : 0.5 * (low + high) - 0.5 * (high - low) * std::cos(pi * j / last));
-      weights_.push_back((j % 2 ? -1.0 : 1.0) * (j == 0 || j == last ? 0.5 : 1.0));
-    }
-  }
-
-  const std::vector<double>& voltages() const { return voltages_; }
-
-  /// Integrals of Lagrange's polynomials of these voltages over the state of charge. Gauss's rule of 20 points is exact
-  /// for them: they are of degree 10 in a voltage that is a cubic of the charge on each piece of the discharge curve.
-  std::vector<double> integrals(const Battery<double>& battery, double from, double to) const {
-    std::vector<double> result(voltages_.size(), 0.0), ends{from};
-    for (const auto& [charge, voltage] : battery.discharge_curve) {
-      if (charge > from && charge < to) ends.push_back(charge);
-    }
-    ends.push_back(to);
-    for (std::size_t k = 1; k < ends.size(); ++k) {
-      for (std::size_t j = 0; j < voltages_.size(); ++j) {
-        const auto polynomial = [&](double charge) { return lagrange(j, open_circuit_voltage(battery, charge)); };
-        result[j] += boost::math::quadrature::gauss<double, 20>::integrate(polynomial, ends[k - 1], ends[k]);
-      }
-    }
-    return result;
-  }
-
- private:
-  /// In barycentric form (Berrut and Trefethen 2004).
-  double lagrange(std::size_t j, double voltage) const {
-    double sum = 0.0;
-    for (std::size_t n = 0; n < voltages_.size(); ++n) {
-      if (voltage == voltages_[n]) return n == j ? 1.0 : 0.0;
-      sum += weights_[n] / (voltage - voltages_[n]);
-    }
-    return weights_[j] / (voltage - voltages_[j]) / sum;
-  }
-
-  std::vector<double> voltages_, weights_;
-};
-
-/// What ends a flight or a part of it.
-enum class FlightEvent {
-  empty,   ///< no charge is left
-  cutoff,  ///< the terminal voltage has fallen to the cut-off
-  sinks    ///< lift has fallen to the weight
-};
 
 /// The derivatives of a flight whose orbits are functions of the open-circuit voltage and of the parameters.
 class FlightGradient {
@@ -139,7 +92,7 @@ class FlightGradient {
 };
 
 /// By differences, where the flight ends at a fold of the orbits or its temperatures are states, where hover ends by
-/// leaving the domain, under a speed control, and for a bridge, on which a flight is one orbit.
+/// leaving the domain, at a stated duty below 1, and for a bridge, on which a flight is one orbit.
 std::vector<double> by_differences(const Design<double>& design, Condition condition, double tolerance,
                                    std::span<const DesignParameter> parameters, const FlightMetrics& wanted) {
   std::vector<double> result;
@@ -179,18 +132,23 @@ Endurance endurance_of(const Design<double>& design, Condition condition, double
   const bool warms_up = design.motor.thermal.resistance_winding && design.motor.thermal.time_constant_winding;
   const Supply<double>& supply = design.supply;
   const bool one_orbit = supply.type == SupplyType::battery_sine;
-  const bool controlled = supply.throttle == Throttle::hover || supply.duty < 1.0;
+  const bool throttled = supply.throttle == Throttle::hover;
   const FlightGradient gradient(design, condition, tolerance, parameters);
   const auto derivatives = [&](double time, double s_end, std::optional<FlightEvent> event, FlightMetrics metric) {
     if (!(time > 0.0)) return std::vector<double>(parameters.size(), absent);
-    if (one_orbit || controlled || warms_up || !event)
+    const bool stated_duty = !throttled && supply.duty < 1.0;
+    if (one_orbit || stated_duty || warms_up || !event)
       return by_differences(design, condition, tolerance, parameters, metric);
     const EnduranceRow& first = flight.rows.front();
+    if (throttled) {
+      return detail::throttled_gradient(design, condition, tolerance, parameters, {time, first.charge, s_end, *event});
+    }
     return gradient.of_time(time, first.charge, first.metrics[Metric::current_mean], s_end, *event);
   };
   std::optional<FlightEvent> end;
   if (flight.end == EnduranceEnd::empty) end = FlightEvent::empty;
   if (flight.end == EnduranceEnd::cutoff) end = FlightEvent::cutoff;
+  if (flight.end == EnduranceEnd::sinks) end = FlightEvent::sinks;
   const bool kept = flight.hover == Hover::kept;
   if (wanted.endurance || (wanted.hover && kept)) {
     const double s_end = flight.rows.empty() ? absent : flight.rows.back().charge;

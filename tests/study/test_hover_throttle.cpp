@@ -310,20 +310,47 @@ TEST(HoverThrottle, AFlightFromAHeldLiftKeepsTheDutyFound) {
   }
 }
 
+struct DifferentiatedFlight {
+  Design<double> design;
+  EnduranceEnd end;
+  std::vector<const char*> keys;
+};
+
 TEST(HoverThrottle, DerivativesOfTheTimeOfHover) {
-  const Design<double> d = throttled_design();
-  const std::vector<DesignParameter> parameters{design_parameter("vehicle.mass"), design_parameter("supply.capacity")};
   const FlightMetrics wanted{true, true, true};
-  const Endurance e = endurance_of(d, Condition::air, 1e-7, parameters, wanted);
-  ASSERT_GT(e.hover, 0.0);
-  EXPECT_NEAR(e.hover_by_parameter[1] * d.supply.battery.capacity / e.hover, 1.0, 1e-5);
-  const auto hover = [&](double mass) {
-    Design<double> moved = d;
-    moved.mass = mass;
-    return endurance_of(moved, Condition::air, 1e-9, {}, wanted).hover;
-  };
-  const double h = 1e-3 * *d.mass;
-  EXPECT_NEAR(e.hover_by_parameter[0] / ((hover(*d.mass + h) - hover(*d.mass - h)) / (2.0 * h)), 1.0, 1e-3);
+  Design<double> d = throttled_design();
+  d.supply.battery.charge = 0.97;
+  Design<double> cut = d, empty = d, by_energy = d, brushless = d;
+  cut.supply.battery.cutoff_voltage = 3.2;
+  *empty.mass *= 0.6;
+  by_energy.supply.battery.specific_energy = 5e5;
+  brushless.electronics.efficiency = 0.9;
+  const DifferentiatedFlight flights[] = {
+      {d, EnduranceEnd::sinks, {"supply.internal_resistance", "supply.charge", "transmission.crank_radius"}},
+      {cut, EnduranceEnd::cutoff, {"supply.cutoff_voltage"}},
+      {empty, EnduranceEnd::empty, {"vehicle.mass"}},
+      {by_energy, EnduranceEnd::sinks, {"supply.capacity"}},
+      {brushless, EnduranceEnd::sinks, {"vehicle.mass"}}};
+  for (const auto& [design, end, keys] : flights) {
+    SCOPED_TRACE(int(end));
+    EXPECT_EQ(simulate_discharge(design, {.tolerance = 1e-6, .allow_extrapolation = true}).end, end);
+    std::vector<DesignParameter> parameters;
+    for (const char* key : keys) parameters.push_back(design_parameter(key));
+    const Endurance e = endurance_of(design, Condition::air, 1e-8, parameters, wanted);
+    ASSERT_GT(e.hover, 0.0);
+    EXPECT_EQ(e.hover_by_parameter, e.by_parameter);
+    for (std::size_t k = 0; k < parameters.size(); ++k) {
+      SCOPED_TRACE(keys[k]);
+      const double x = *parameters[k].value(design), h = 1e-3 * x;
+      const auto hover = [&](double steps) {
+        Design<double> moved = design;
+        parameters[k].set(moved, x + steps * h);
+        return endurance_of(moved, Condition::air, 1e-8, {}, wanted).hover;
+      };
+      const double difference = (8.0 * (hover(1.0) - hover(-1.0)) - (hover(2.0) - hover(-2.0))) / (12.0 * h);
+      EXPECT_NEAR(e.hover_by_parameter[k], difference, 2e-5 * std::abs(difference) + 3e-6 * e.hover / x);
+    }
+  }
 }
 
 // Settled at every charge, and with time constants that are short beside the flight.

@@ -129,8 +129,9 @@ struct Endurance {
 
 /// What is wanted of a flight to a relative `tolerance`, for some fifty orbits, and its derivatives: exact, for eleven
 /// orbits with gradients each, where the battery is emptied to its cut-off or to the end and where lift falls below the
-/// weight; by central differences where no orbit is left before that, where hover ends by leaving the domain, where the
-/// motor's temperatures are states of the flight, and under a speed control. Throws as simulate_discharge().
+/// weight, also at the throttle that carries it; by central differences where no orbit is left before that, where hover
+/// ends by leaving the domain, where the motor's temperatures are states of the flight, at a stated duty below 1 and
+/// behind a bridge. Throws as simulate_discharge().
 Endurance endurance_of(const Design<double>& design, Condition condition, double tolerance,
                        std::span<const DesignParameter> parameters = {}, FlightMetrics wanted = {true, true, false});
 
