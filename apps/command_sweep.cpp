@@ -166,6 +166,7 @@ std::string summary(const Study& study, const SweepResult& result) {
                 88, 2));
   };
   best("maximum mean lift", digest.lift, [](double lift) { return readable(lift, "N"); });
+  best("least electrical power", digest.power, [](double power) { return readable(power, "W"); });
   best("maximum efficiency", digest.efficiency, [](double share) { return fmt::format("{:.2f} %", 100.0 * share); });
   return text;
 }

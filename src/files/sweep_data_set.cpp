@@ -36,10 +36,14 @@ class Digester {
     const auto kept = kept_metrics(sweep);
     for (std::size_t m = 0; m < kept.size(); ++m) {
       if (kept[m] == Metric::lift_mean) lift_ = int(m);
+      if (kept[m] == Metric::power_electrical) power_ = int(m);
       if (kept[m] == Metric::efficiency_system) efficiency_ = int(m);
       if (kept[m] == Metric::lift_to_weight) weight_ = int(m);
     }
     if (sweep.hold && sweep.hold->held == Held::lift_to_weight) weight_ = -1;  // all have the same
+    const bool lifts_alike = sweep.hold && (sweep.hold->held == Held::lift || sweep.hold->held == Held::lift_to_weight);
+    if (lifts_alike) lift_ = -1;
+    else power_ = -1;
   }
 
   void add(const SweepColumns& columns) {
@@ -50,6 +54,7 @@ class Digester {
       for (std::size_t k = 0; k < digest_.beyond.size(); ++k) digest_.beyond[k] += columns.domain[row] >> k & 1;
     }
     if (lift_ >= 0) best(digest_.lift, columns, lift_);
+    if (power_ >= 0) best(digest_.power, columns, power_);
     if (efficiency_ >= 0) best(digest_.efficiency, columns, efficiency_);
   }
 
@@ -66,7 +71,7 @@ class Digester {
 
   SweepDigest digest_;
   bool allow_extrapolation_;
-  int lift_ = -1, efficiency_ = -1, weight_ = -1;
+  int lift_ = -1, power_ = -1, efficiency_ = -1, weight_ = -1;
 };
 
 struct CloseHdf5 {
@@ -245,8 +250,8 @@ SweepDigest digest_of(const fs::path& path, const Study& study) {
     file.read_run("recomputed", columns.first, columns.recomputed);
     file.read_run("domain", columns.first, columns.domain);
     for (std::size_t m = 0; m < kept.size(); ++m) {
-      const bool wanted =
-          kept[m] == Metric::lift_mean || kept[m] == Metric::efficiency_system || kept[m] == Metric::lift_to_weight;
+      const bool wanted = kept[m] == Metric::lift_mean || kept[m] == Metric::power_electrical ||
+                          kept[m] == Metric::efficiency_system || kept[m] == Metric::lift_to_weight;
       if (wanted) file.read_run(metric_info(kept[m]).key, columns.first, columns.metrics[m]);
     }
     digester.add(columns);

@@ -139,7 +139,10 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
                    p.parameter.unit == "1" ? "" : p.parameter.unit);
   }
   if (!study.parameters.empty()) text_neighbourhood(out, study, r);
-  fmt::format_to(out, "\nThe design\n");
+  // The flight's throttle follows the weight; the cycle's metrics are those of the duty that is stated.
+  const Supply<double>& supply = r.design.supply;
+  const bool follows = supply.throttle == Throttle::hover && !study.options.hold;
+  fmt::format_to(out, "\nThe design{}\n", follows ? fmt::format(" at a duty of {:.4g}", supply.duty) : "");
   for (const Metric m :
        {Metric::voltage, Metric::frequency, Metric::lift_to_weight, Metric::lift_mean, Metric::power_electrical,
         Metric::efficiency_system, Metric::current_peak, Metric::stroke_amplitude, Metric::rod_force_peak}) {

@@ -155,7 +155,7 @@ std::string pitch_remark(const RunResult& result) {
   }
   const double share = lift_per_power(angle) / best;
   if (!(share < 0.5)) return "";
-  return fmt::format("{:.0f} % of the best lift per power, at {:.0f} deg", 100.0 * share, best_angle);
+  return fmt::format("{:.0f} % of the best lift/power, at {:.0f} deg", 100.0 * share, best_angle);
 }
 
 }  // namespace

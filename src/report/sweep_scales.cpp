@@ -156,10 +156,10 @@ std::vector<double> lift_over_weight(const Sweep& sweep, const NetcdfReader& fil
 
 SweepBest best_of(const Field& field, const std::vector<double>& weight, const std::vector<double>& domain,
                   bool extrapolates) {
-  SweepBest best;
+  SweepBest best(field.lower_is_better());
   for (std::size_t n = 0; n < field.values.size(); ++n) {
     if (!extrapolates && domain[n] != 0.0) continue;
-    best.offer(n, field.lower_is_better() ? -field.values[n] : field.values[n], weight.empty() ? absent : weight[n]);
+    best.offer(n, field.values[n], weight.empty() ? absent : weight[n]);
   }
   return best;
 }

@@ -80,8 +80,10 @@ const Description<SweepFound>& sweep_description() {
         .always("recomputed", "", "designs that the batched solver left to the scalar one",
                 [](const R& r) { return r.result.digest.recomputed; })
         .part("status", "numbers of designs", by_status, std::identity{})
-        .part("max_lift_mean", "the design of most mean lift; null where none flaps",
+        .part("max_lift_mean", "the design of most mean lift; null where none flaps, and where lift is held",
               best_description(Metric::lift_mean), best(&SweepDigest::lift))
+        .part("min_power_electrical", "the design of least electrical power, where lift is held; else null",
+              best_description(Metric::power_electrical), best(&SweepDigest::power))
         .part("max_efficiency_system", "the design of most system efficiency; null where none flaps",
               best_description(Metric::efficiency_system), best(&SweepDigest::efficiency));
   }();

@@ -43,6 +43,16 @@ int on_copies(const BenchFitter& fitter, std::size_t count, const char* what, co
 
 }  // namespace
 
+BenchFit on_bench_supply(BenchFit fit) {
+  Supply<double>& supply = fit.design.supply;
+  if (supply.type != SupplyType::battery) return fit;
+  const std::optional<double> mass = battery_mass(supply.battery);
+  if (mass) fit.design.masses.supply = fit.design.masses.supply.value_or(0.0) + *mass;
+  supply.voltage = open_circuit_voltage(supply.battery, supply.battery.charge);
+  supply.type = SupplyType::constant;
+  return fit;
+}
+
 void check_fit(const BenchFit& fit) {
   std::set<std::string> keys;
   if (fit.logs.empty()) throw ParameterError("log", "missing: there is nothing to fit to");
@@ -82,7 +92,7 @@ void check_fit(const BenchFit& fit) {
     }
   }
   if (fit.design.supply.type != SupplyType::constant && !drive_of(fit.design).alternating) {
-    throw ParameterError("supply.type", "bench data are fitted with a constant supply");
+    throw ParameterError("supply.type", "bench data are fitted with a constant supply, which a battery gives way to");
   }
   for (const BenchLog& log : fit.logs) {
     for (const MeasuredQuantity& q : log.columns) {
@@ -229,7 +239,10 @@ std::string condition_name(Condition condition, bool springs) {
 
 FitResult fit_bench(const BenchFit& fit, const std::function<void(const std::string&)>& progress,
                     const ForEach& for_each) {
-  return run_fit(fit, FitPurpose::intervals, progress, for_each);
+  FitResult result = run_fit(on_bench_supply(fit), FitPurpose::intervals, progress, for_each);
+  result.design.supply = fit.design.supply;
+  result.design.masses.supply = fit.design.masses.supply;
+  return result;
 }
 
 }  // namespace wingbeat

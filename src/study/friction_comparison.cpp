@@ -34,10 +34,11 @@ double mean_friction_torque(const BenchFit& fit, double& speed) {
 
 }  // namespace
 
-std::vector<FrictionCandidate> compare_friction(const BenchFit& fit,
+std::vector<FrictionCandidate> compare_friction(const BenchFit& given,
                                                 const std::function<DesignParameter(const std::string&)>& parameter_of,
                                                 const std::function<void(const std::string&)>& progress,
                                                 const ForEach& for_each) {
+  const BenchFit fit = on_bench_supply(given);
   check_fit(fit);
   const auto is_friction = [](const FreeParameter& p) { return p.parameter.key.starts_with("friction."); };
   const auto own = std::find_if(fit.parameters.begin(), fit.parameters.end(), is_friction);

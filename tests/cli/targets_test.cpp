@@ -57,6 +57,18 @@ TEST_F(Targets, LiftAboveThePeakIsRefusedWithThePeak) {
   EXPECT_LT(beyond.json()["angle_of_attack_min_deg"].get<double>(), 0.0);
 }
 
+TEST_F(Targets, TheAngleOfAttackIsFoundByThePitchCoefficient) {
+  const Outcome o = flapper({"--angle-of-attack", "45 deg", "--lift-to-weight", "1"});
+  ASSERT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("smallest angle of attack             45.00 deg\n  pitch_coefficient "));
+  EXPECT_THAT(o.out, HasSubstr(" ms   that was found\n"));
+  EXPECT_THAT(o.out, HasSubstr("mean lift / weight                           1"));
+  EXPECT_EQ(flapper({"--angle-of-attack", "95 deg"}).err, "wingbeat: --angle-of-attack: must be > 0 deg, < 90 deg\n");
+  const Outcome hinge = run({"run", "pitch-hinge", "--angle-of-attack", "45 deg"});
+  EXPECT_EQ(hinge.status, 2);
+  EXPECT_THAT(hinge.err, HasSubstr("angle_of_attack: follows from the hinge"));
+}
+
 TEST_F(Targets, ThePowerIsFoundByTheVoltage) {
   const Json json = flapper({"--power", "500 mW", "--json"}).json();
   EXPECT_NEAR(json["power_electrical_w"].get<double>(), 0.5, 1e-6);

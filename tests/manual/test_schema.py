@@ -210,7 +210,17 @@ class Schema(unittest.TestCase):
                    'supply={type="pwm", voltage="6 V", duty=0.5, frequency="20 kHz"}')
         for vehicle in ("friction2022-battery", "direct-drive", "pitch-hinge", "x-wing-crank"):
             self.check("run", vehicle)
+        self.check("run", "friction2022", "--angle-of-attack", "45 deg")
         self.everything_is_written("run")
+
+    def test_scale_and_synthesise(self):
+        self.check("scale", "two-wing-direct", "--wing", "1.1")
+        self.check("scale", "friction2022", "--vehicle", "0.5")
+        self.everything_is_written("scale")
+        target = ("--stroke", "80 deg", "--envelope", "25 mm")
+        self.check("synthesise", "four-bar", *target, "--clearance", "0.02 mm", "--time-ratio", "1.1")
+        self.check("synthesise", "slider-crank", *target)
+        self.everything_is_written("synthesise")
 
     def test_a_wrong_value_is_refused(self):
         validator = jsonschema.Draft202012Validator(schema_of("run"))

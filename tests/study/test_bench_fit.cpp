@@ -71,6 +71,33 @@ TEST(BenchFit, ExactDataGiveTheVehicleBack) {
   EXPECT_TRUE(r.unreached.empty());
 }
 
+// A power supply stands in the battery's place; what the battery weighs still counts.
+TEST(BenchFit, AVehicleWithABatteryIsFittedOnAPowerSupply) {
+  BenchFit fit = bench(0.0, 1, true);
+  const FitResult expected = fit_bench(fit);
+  const std::vector<Metric> seen = {Metric::voltage, Metric::frequency, Metric::lift_to_weight};
+  Design<double> heavier = reference_design();
+  heavier.mass = *heavier.mass + 2e-3;
+  fit.logs.push_back(bench_log(heavier, Condition::air, false, {2.5, 3.5}, seen));
+  set_deviations(fit, 0.01);
+  Supply<double>& supply = fit.design.supply;
+  supply = {};
+  supply.type = SupplyType::battery;
+  supply.battery.cells = 1.0;
+  supply.battery.cell_voltage = 3.7;
+  supply.battery.capacity = 100.0;
+  supply.battery.specific_energy = 3.7 * 100.0 / 2e-3;
+  supply.battery.internal_resistance = 0.5;
+  const FitResult r = fit_bench(fit);
+  EXPECT_TRUE(r.converged) << r.message;
+  for (const FittedParameter& p : r.parameters) EXPECT_NEAR(*p.value / truth(p.key), 1.0, 2e-4) << p.key;
+  EXPECT_LT(r.chi_square, 1e-2);
+  EXPECT_EQ(r.parameters.size(), expected.parameters.size());
+  EXPECT_EQ(r.design.supply.type, SupplyType::battery);
+  EXPECT_EQ(r.design.supply.battery.internal_resistance, 0.5);
+  EXPECT_FALSE(r.design.masses.supply.has_value());
+}
+
 TEST(BenchFit, FrequencySetOnTheBench) {
   BenchFit fit = bench(0.0, 1);
   const std::vector<double> v = spaced_voltages(2.0, 4.0, 6);

@@ -19,7 +19,8 @@ struct SweepDigest {
   std::uint64_t recomputed = 0;                             ///< by the scalar solver
   std::uint64_t outside = 0;                                ///< flapping, but outside the model's domain
   std::array<std::uint64_t, domain_limit_count> beyond{};   ///< of those, by DomainLimit
-  SweepBest lift;                                           ///< by lift_mean [N], if kept
+  SweepBest lift;                                           ///< by lift_mean [N], if kept and not held
+  SweepBest power{true};                                    ///< where lift is held, by power_electrical [W], if kept
   SweepBest efficiency;                                     ///< by efficiency_system [1], if kept
 };
 
