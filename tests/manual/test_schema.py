@@ -243,6 +243,11 @@ class Schema(unittest.TestCase):
     def test_sweep(self):
         self.check("sweep", self.file("study.toml", SWEEP.format(low="2 V")), "-o", "sweep.nc")
         self.check("sweep", self.file("none.toml", SWEEP.format(low="0.1 V")), "-o", "none.nc")
+        hovering = '[study]\nvehicle = "two-wing-direct"\nhold = { lift_to_weight = 1 }\n' \
+                   '[[axis]]\nkey = "spring.stiffness"\nvalues = [0.012, 0.0133]\n'
+        held = self.check("sweep", self.file("hover.toml", hovering), "-o", "hover.nc")
+        self.assertIsNone(held["max_lift_mean"])
+        self.assertGreater(held["min_power_electrical"]["power_electrical_w"], 0)
         self.everything_is_written("sweep")
 
     def test_motors(self):
