@@ -6,15 +6,13 @@
 #include <string_view>
 #include <vector>
 
+#include "files/column_headers.hpp"
 #include "wingbeat/study/bench_fit.hpp"
 
 namespace wingbeat::detail {
 
-/// A column of a log by its name without unit.
-struct ColumnName {
-  std::string name;
-  std::string full;  ///< with the SI unit, as in JSON and data sets: "current_mean_a"
-  std::string unit;
+/// A column of a log.
+struct ColumnName : NamedColumn {
   MeasuredQuantity quantity;
   bool may_be_negative;
 };

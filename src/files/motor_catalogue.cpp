@@ -3,39 +3,60 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 
-#include "files/csv_cells.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
 
 namespace wingbeat::detail {
 namespace {
 
-std::vector<std::string> cells_of(std::string_view line) {
-  std::vector<std::string> cells(1);
-  bool quoted = false;
-  for (const char c : line) {
-    if (c == '"') quoted = !quoted;
-    else if (c == ',' && !quoted) cells.emplace_back();
-    else if (c != '\r') cells.back() += c;
-  }
-  return cells;
-}
+/// What manufacturers and collections call the columns.
+constexpr ColumnAlias aliases[] = {{"type", "model"},
+                                   {"motor", "model"},
+                                   {"part_number", "model"},
+                                   {"ratio", "gear_ratio"},
+                                   {"reduction", "gear_ratio"},
+                                   {"r", "armature_resistance"},
+                                   {"resistance", "armature_resistance"},
+                                   {"terminal_resistance", "armature_resistance"},
+                                   {"phase_to_phase_resistance", "armature_resistance"},
+                                   {"k_t", "torque_constant"},
+                                   {"kt", "torque_constant"},
+                                   {"k_m", "torque_constant"},
+                                   {"l", "armature_inductance"},
+                                   {"inductance", "armature_inductance"},
+                                   {"terminal_inductance", "armature_inductance"},
+                                   {"rotor_inertia", "inertia"},
+                                   {"j", "inertia"},
+                                   {"coulomb_friction", "friction_torque"},
+                                   {"viscous_friction", "viscous_damping"},
+                                   {"weight", "mass"},
+                                   {"i_0", "no_load_current"},
+                                   {"i0", "no_load_current"},
+                                   {"n_0", "no_load_speed"},
+                                   {"n0", "no_load_speed"},
+                                   {"rated_current", "nominal_current"},
+                                   {"continuous_current", "nominal_current"},
+                                   {"max_continuous_current", "nominal_current"},
+                                   {"maximum_continuous_current", "nominal_current"},
+                                   {"rth1", "thermal_resistance_winding"},
+                                   {"rth2", "thermal_resistance_case"}};
 
 /// A row as a vehicle, or what it lacks.
 template <class Number>
 MotorCandidate candidate(const std::string& model, const Number& number, double gear, std::optional<double> rest,
                          const Design<double>& design) {
-  MotorCandidate motor{one_line(model), "", {}, design};
-  const auto resistance = number("resistance_ohm"), constant = number("torque_constant_Nm_per_A");
-  const auto inertia = number("rotor_inertia_kgm2"), inductance = number("inductance_H");
-  const auto mass = number("mass_kg");
+  MotorCandidate motor{one_line(model), "", {}, design, {}};
+  const auto resistance = number("armature_resistance"), constant = number("torque_constant");
+  const auto inertia = number("inertia"), inductance = number("armature_inductance");
+  const auto mass = number("mass");
   // Heat is a choice of the vehicle; the resistances are the motor's own.
   MotorThermalDesign<double>& thermal = motor.design.motor.thermal;
   const bool heats = thermal.resistance_winding.has_value();
   if (heats) {
-    thermal.resistance_winding = number("Rth1_K_per_W");
-    thermal.resistance_case = number("Rth2_K_per_W");
+    thermal.resistance_winding = number("thermal_resistance_winding");
+    thermal.resistance_case = number("thermal_resistance_case");
   }
   std::string lacks;
   const auto need_value = [&](const std::optional<double>& x, const char* what) {
@@ -60,9 +81,9 @@ MotorCandidate candidate(const std::string& model, const Number& number, double 
   c.torque_constant = *constant;
   c.inertia = *inertia;
   c.armature_inductance = *inductance;
-  c.friction_torque = number("friction_torque_Nm").value_or(0.0);
-  const auto no_load_current = number("no_load_current_A"), no_load_speed = number("no_load_speed_rad_s");
-  if (const auto damping = number("viscous_friction_Nms")) {
+  c.friction_torque = number("friction_torque").value_or(0.0);
+  const auto no_load_current = number("no_load_current"), no_load_speed = number("no_load_speed");
+  if (const auto damping = number("viscous_damping")) {
     c.viscous_damping = *damping;
   } else if (no_load_current && no_load_speed) {
     // At no load the motor's torque covers its own friction alone.
@@ -79,6 +100,7 @@ MotorCandidate candidate(const std::string& model, const Number& number, double 
   else motor.design.motor.gear_ratio.reset();
   motor.design.motor.gear_inertia = 0.0;
   motor.design.motor.gear_damping = 0.0;
+  motor.nominal_current = number("nominal_current");
   if (rest) motor.design.mass = rest;
   if (weighed) motor.design.masses.motor = mass;
   try {
@@ -91,45 +113,142 @@ MotorCandidate candidate(const std::string& model, const Number& number, double 
 
 }  // namespace
 
+const std::vector<NamedColumn>& catalogue_columns() {
+  static const std::vector<NamedColumn> columns = {{"model", "model", ""},
+                                                   {"gear_ratio", "gear_ratio", "1"},
+                                                   {"armature_resistance", "resistance_ohm", "ohm"},
+                                                   {"torque_constant", "torque_constant_Nm_per_A", "N m/A"},
+                                                   {"inertia", "rotor_inertia_kgm2", "kg m2"},
+                                                   {"armature_inductance", "inductance_H", "H"},
+                                                   {"friction_torque", "friction_torque_Nm", "N m"},
+                                                   {"viscous_damping", "viscous_friction_Nms", "N m s/rad"},
+                                                   {"mass", "mass_kg", "kg"},
+                                                   {"no_load_current", "no_load_current_A", "A"},
+                                                   {"no_load_speed", "no_load_speed_rad_s", "rad/s"},
+                                                   {"nominal_current", "nominal_current_A", "A"},
+                                                   {"thermal_resistance_winding", "Rth1_K_per_W", "K/W"},
+                                                   {"thermal_resistance_case", "Rth2_K_per_W", "K/W"}};
+  return columns;
+}
+
+namespace {
+
+/// Which cell of a row a column is, and the factor to SI.
+struct Place {
+  std::size_t cell = 0;
+  double factor = 1.0;
+  std::string header;
+  bool alias = false;
+};
+
+class Catalogue {
+ public:
+  Catalogue(std::string_view text, const std::string& name, const CatalogueForm& form)
+      : name_(name), form_(form), table_(read_bench_table(text, name, form.table)) {
+    for (const NamedColumn& c : catalogue_columns()) known_.push_back(&c);
+    for (std::size_t n = 0; n < table_.header.cells.size(); ++n) place(n);
+    for (const auto& [header, meaning] : form.columns) {
+      const auto has = [&, &h = header](const TableCell& cell) { return cell.text == h; };
+      if (std::none_of(table_.header.cells.begin(), table_.header.cells.end(), has)) {
+        refuse(table_.header.number, 1, "", "motors.columns names " + in_quotes(header) + ", which the header has not");
+      }
+    }
+    for (const char* needed : {"model", "armature_resistance", "torque_constant", "inertia", "armature_inductance"}) {
+      if (places_.count(needed) == 0) {
+        refuse(table_.header.number, 1, needed,
+               "missing; expected a column of that name, or motors.columns to name the one that it is");
+      }
+    }
+  }
+
+  const std::vector<TableLine>& rows() const { return table_.rows; }
+
+  std::string text(const TableLine& row, std::string_view column) const {
+    const auto found = places_.find(column);
+    return found == places_.end() ? "" : row.cells[found->second.cell].text;
+  }
+
+  std::optional<double> number(const TableLine& row, std::string_view column) const {
+    const auto found = places_.find(column);
+    if (found == places_.end()) return std::nullopt;
+    const TableCell& cell = row.cells[found->second.cell];
+    if (is_missing(cell.text)) return std::nullopt;
+    std::string content = cell.text;
+    if (table_.decimal_comma) std::replace(content.begin(), content.end(), ',', '.');
+    try {
+      return found->second.factor * parse_quantity(content, "1");
+    } catch (const UnitError&) {
+      refuse(row.number, cell.column, found->second.header, "expected a number, got " + in_quotes(cell.text));
+    }
+  }
+
+ private:
+  [[noreturn]] void refuse(int line, int column, const std::string& key, const std::string& message) const {
+    throw InputError(name_, line, column, key, message);
+  }
+
+  void place(std::size_t n) {
+    const TableCell& cell = table_.header.cells[n];
+    std::string read_as = cell.text;
+    bool mapped = false;
+    for (const auto& [header, meaning] : form_.columns) {
+      if (header != cell.text) continue;
+      if (meaning == "ignore") return;
+      mapped = true;
+      read_as = meaning;
+      // Without a unit of its own the name takes that of the header.
+      const std::size_t bracket = cell.text.find_last_of("([");
+      if (meaning.find_first_of("([") == std::string::npos && bracket != std::string::npos) {
+        read_as += " " + cell.text.substr(bracket);
+      }
+    }
+    const RecognisedHeader found = recognise_header(read_as, known_, aliases);
+    if (!found.column) {
+      if (mapped) {
+        std::string names;
+        for (const NamedColumn* c : known_) names += (names.empty() ? "" : ", ") + c->name;
+        refuse(table_.header.number, cell.column, "",
+               fmt::format("motors.columns names {}, which is none of {}", in_quotes(read_as), names));
+      }
+      return;
+    }
+    if (!found.complaint.empty()) {
+      if (found.renamed && !mapped) return;  // something else of that name
+      refuse(table_.header.number, cell.column, cell.text,
+             fmt::format("{}; motors.columns = {{ {} = \"{} [{}]\" }} says which", found.complaint,
+                         in_quotes(cell.text), found.column->name, found.column->unit));
+    }
+    // A column's own name goes before what others call it.
+    const Place here{n, found.factor, cell.text, found.renamed && !mapped};
+    const auto [before, fresh] = places_.try_emplace(found.column->name, here);
+    if (fresh || (here.alias && !before->second.alias)) return;
+    if (before->second.alias && !here.alias) {
+      before->second = here;
+      return;
+    }
+    refuse(
+        table_.header.number, cell.column, cell.text,
+        fmt::format("{} is given twice, as {} and as {}; motors.columns = {{ {} = \"ignore\" }} leaves one out",
+                    found.column->name, in_quotes(before->second.header), in_quotes(cell.text), in_quotes(cell.text)));
+  }
+
+  const std::string& name_;
+  const CatalogueForm& form_;
+  BenchTable table_;
+  std::vector<const NamedColumn*> known_;
+  std::map<std::string, Place, std::less<>> places_;
+};
+
+}  // namespace
+
 std::vector<MotorCandidate> parse_motor_catalogue(std::string_view text, const std::string& name, double gear,
-                                                  std::optional<double> rest, const Design<double>& design) {
+                                                  std::optional<double> rest, const Design<double>& design,
+                                                  const CatalogueForm& form) {
+  const Catalogue catalogue(text, name, form);
   std::vector<MotorCandidate> motors;
-  std::vector<std::string> header;
-  int line_number = 0;
-  const auto refuse_there = [&](const std::string& key, const std::string& message) {
-    throw InputError(name, line_number, 1, key, message);
-  };
-  for (std::string_view line; next_line(text, line, line_number);) {
-    if (is_blank_or_comment(line)) continue;
-    const std::vector<std::string> cells = cells_of(line);
-    if (header.empty()) {
-      header = cells;
-      for (const char* needed : {"model", "gear_ratio", "resistance_ohm", "torque_constant_Nm_per_A",
-                                 "rotor_inertia_kgm2", "inductance_H"}) {
-        if (std::find(header.begin(), header.end(), needed) == header.end()) {
-          refuse_there(needed, "missing; expected a column of that name");
-        }
-      }
-      continue;
-    }
-    if (cells.size() != header.size()) {
-      refuse_there("", fmt::format("expected {} cells, got {}", header.size(), cells.size()));
-    }
-    const auto cell = [&](std::string_view column) -> std::string {
-      const auto found = std::find(header.begin(), header.end(), column);
-      return found == header.end() ? "" : cells[std::size_t(found - header.begin())];
-    };
-    const auto number = [&](std::string_view column) -> std::optional<double> {
-      const std::string content = cell(column);
-      if (content.find_first_not_of(" \t") == std::string::npos) return std::nullopt;
-      try {
-        return parse_quantity(content, "1");
-      } catch (const UnitError&) {
-        refuse_there(std::string(column), fmt::format("expected a number, got {}", in_quotes(content)));
-      }
-      return std::nullopt;
-    };
-    motors.push_back(candidate(cell("model"), number, gear, rest, design));
+  for (const TableLine& row : catalogue.rows()) {
+    const auto number = [&](std::string_view column) { return catalogue.number(row, column); };
+    motors.push_back(candidate(catalogue.text(row, "model"), number, gear, rest, design));
   }
   return motors;
 }

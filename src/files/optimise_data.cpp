@@ -173,7 +173,7 @@ void write_optimum(const OptimiseFile& file, std::span<const MotorTrial> trials,
     const DesignParameter& p = file.choices[k].parameter;
     column(variable_name(p.key), p.unit, meaning_of(p), [k](const MotorTrial& t) { return t.choices[k]; });
   }
-  if (best) write_best(data, study, best->result);
+  if (best) write_best(data, trial_study(file, *best), best->result);
   data.close();
 }
 

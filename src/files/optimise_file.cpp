@@ -313,7 +313,9 @@ class OptimiseReader : public detail::StudySections {
 
   void read_motors(const TomlNode& node, OptimiseFile& file) {
     must_be_section(node, "motors");
-    known_keys(node, "motors", {"catalogue", "gear_ratio", "mass_without"});
+    known_keys(
+        node, "motors",
+        {"catalogue", "gear_ratio", "mass_without", "columns", "separator", "decimal", "within_nominal_current"});
     const TomlNode& name = need(node, "motors", "catalogue", "the name of a CSV file");
     const fs::path path = folder_ / text_of(name, "motors.catalogue", "the name of a CSV file");
     if (!is_there(path)) refuse(name, "motors.catalogue", fmt::format("there is no file {}", path.string()));
@@ -330,12 +332,39 @@ class OptimiseReader : public detail::StudySections {
                "the motor already");
       }
     }
-    file.motors = detail::parse_motor_catalogue(read_text_file(path), path.string(), gear, rest, file.study.design);
+    if (const TomlNode* within = node.find("within_nominal_current")) {
+      file.within_nominal_current = boolean(*within, "motors.within_nominal_current");
+    }
+    file.motors = detail::parse_motor_catalogue(read_text_file(path), path.string(), gear, rest, file.study.design,
+                                                catalogue_form(node));
     if (std::none_of(file.motors.begin(), file.motors.end(), [](const auto& m) { return m.refused.empty(); })) {
       std::string reason = file.motors.empty() ? "holds no motors" : "holds no motor that can be tried";
       if (!file.motors.empty()) reason += fmt::format(": {}: {}", file.motors[0].model, file.motors[0].refused);
       refuse(name, "motors.catalogue", reason);
     }
+  }
+
+  detail::CatalogueForm catalogue_form(const TomlNode& node) {
+    detail::CatalogueForm form;
+    const auto sign = [&](const char* key, std::string_view allowed, const char* expected) -> std::optional<char> {
+      const TomlNode* value = node.find(key);
+      if (!value) return std::nullopt;
+      const std::string where = std::string("motors.") + key, text = text_of(*value, where, expected);
+      if (text.size() != 1 || allowed.find(text[0]) == std::string_view::npos) {
+        refuse(*value, where, std::string("must be ") + expected);
+      }
+      return text[0];
+    };
+    form.table.separator = sign("separator", ",;\t", R"(",", ";" or "\t")");
+    form.table.decimal = sign("decimal", ".,", R"("." or ",")");
+    if (const TomlNode* columns = node.find("columns")) {
+      const char* expected = "headers with what they are, as { \"R (Ohm)\" = \"armature_resistance\" }";
+      if (columns->kind != Kind::table) refuse(*columns, "motors.columns", std::string("must be ") + expected);
+      for (const auto& [header, meaning] : columns->members) {
+        form.columns.emplace_back(header, text_of(meaning, "motors.columns", expected));
+      }
+    }
+    return form;
   }
 
   fs::path folder_;

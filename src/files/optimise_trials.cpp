@@ -32,6 +32,9 @@ OptimiseStudy trial_study(const OptimiseFile& file, const MotorTrial& trial) {
   OptimiseStudy study = file.study;
   if (trial.motor) study.design = trial.motor->design;
   for (std::size_t k = 0; k < file.choices.size(); ++k) file.choices[k].parameter.set(study.design, trial.choices[k]);
+  if (file.within_nominal_current && trial.motor && trial.motor->nominal_current) {
+    study.constraints.push_back({Metric::current_rms, false, study.design.motors * *trial.motor->nominal_current});
+  }
   return study;
 }
 

@@ -171,7 +171,7 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
     if (t->refused()) {
       what = t->motor->refused;
     } else if (t->result.outcome != OptimiseResult::Outcome::found) {
-      what = describe(nothing_found(study, t->result));
+      what = describe(nothing_found(trial_study(file, *t), t->result));
     } else {
       what = with_unit(t->result.point.metrics[study.objective], metric_info(study.objective).unit);
       for (std::size_t k = 0; k < study.parameters.size(); ++k) {
@@ -191,7 +191,9 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
   if (!best) {
     return text + (file.motors.empty() ? "\nNone of the choices does it.\n" : "\nNo motor of the catalogue does it.\n");
   }
-  return text + "\nBest: " + name_of(file, *best) + "\n\n" + text_optimum(file, best->result);
+  OptimiseFile of_best = file;
+  of_best.study = trial_study(file, *best);
+  return text + "\nBest: " + name_of(file, *best) + "\n\n" + text_optimum(of_best, best->result);
 }
 
 }  // namespace wingbeat

@@ -15,7 +15,7 @@ namespace {
 
 /// An optimum with the study that it is of.
 struct OptimumFound {
-  const OptimiseStudy& study;
+  OptimiseStudy study;
   const OptimiseResult& result;
   bool found() const { return result.outcome == OptimiseResult::Outcome::found; }
 };
@@ -191,7 +191,7 @@ const Description<TrialFound>& trial_description() {
             },
             schema::by_name(Json(true)))
         .part("result", "the optimum with it", optimum_description(),
-              [](const R& r) { return OptimumFound{r.file.study, r.trial.result}; });
+              [](const R& r) { return OptimumFound{trial_study(r.file, r.trial), r.trial.result}; });
   }();
   return description;
 }

@@ -108,6 +108,24 @@ TEST_F(Optimise, ACatalogueOfMotorsExplainsEveryRow) {
   EXPECT_NEAR(json["motors"][0]["result"]["value"].get<double>(), own["value"].get<double>(), 1e-6);
 }
 
+TEST_F(Optimise, AMotorKeepsItsNominalCurrent) {
+  const auto with = [&](const char* nominal, const std::string& keys = "") {
+    std::ofstream(path("motors.csv"))
+        << "Type;R [ohm];k_t [mN m/A];Rotor inertia [kg m2];L [mH];viscous_damping [N m s/rad];Rated current [A];ratio\n"
+        << "own;9;10;1,5e-7;29;3,6e-6;" << nominal << ";20\n";
+    const std::string motors = "[motors]\ncatalogue = \"motors.csv\"\ngear_ratio = 1\n" + keys;
+    return run({"optimise", study(motors + objective + voltage + hover), "--json"}).json()["motors"][0]["result"];
+  };
+  const Json free = with("");
+  const double current = free["metrics"]["current_rms_a"].get<double>();
+  EXPECT_EQ(with("5,0"), free);
+  const Json much = with("0,01");
+  EXPECT_EQ(much["outcome"], "infeasible");
+  EXPECT_THAT(much["reason"].get<std::string>(), HasSubstr("current_rms_a <= 0.01"));
+  EXPECT_EQ(with("0,01", "within_nominal_current = false\n"), free);
+  EXPECT_GT(current, 0.01);
+}
+
 TEST_F(Optimise, TheMotorsMassCountsWhereTheVehicleGivesOne) {
   std::ofstream(path("motors.csv"))
       << "model,gear_ratio,resistance_ohm,torque_constant_Nm_per_A,rotor_inertia_kgm2,inductance_H,"

@@ -331,7 +331,10 @@ TEST(HoverThrottle, DerivativesOfTheTimeOfHover) {
       {empty, EnduranceEnd::empty, {"vehicle.mass"}},
       {by_energy, EnduranceEnd::sinks, {"supply.capacity"}},
       {brushless, EnduranceEnd::sinks, {"vehicle.mass"}}};
-  for (const auto& [design, end, keys] : flights) {
+  for (const DifferentiatedFlight& flight : flights) {
+    const Design<double>& design = flight.design;
+    const std::vector<const char*>& keys = flight.keys;
+    const EnduranceEnd end = flight.end;
     SCOPED_TRACE(int(end));
     EXPECT_EQ(simulate_discharge(design, {.tolerance = 1e-6, .allow_extrapolation = true}).end, end);
     std::vector<DesignParameter> parameters;

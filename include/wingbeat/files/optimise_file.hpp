@@ -17,6 +17,7 @@ struct MotorCandidate {
   std::string refused;               ///< why it cannot be tried; empty if it can
   std::vector<std::string> derived;  ///< what was derived from other columns, and how
   Design<double> design;
+  std::optional<double> nominal_current = {};  ///< of one motor, that it may carry for any time [A]
 };
 
 struct OptimiseFile {
@@ -24,6 +25,7 @@ struct OptimiseFile {
   std::filesystem::path vehicle_file;
   OptimiseStudy study;
   std::vector<MotorCandidate> motors;  ///< empty: the vehicle's own motor alone
+  bool within_nominal_current = true;  ///< of a motor that states it: a bound on the rms current of one objective
   std::vector<DiscreteParameter> choices;
   std::vector<ParetoObjective> objectives;  ///< empty: one objective, that of `study`
   EvolutionOptions evolution;               ///< of several objectives
