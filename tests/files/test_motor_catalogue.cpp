@@ -70,7 +70,7 @@ TEST(MotorCatalogue, ColumnsAreNamedByTheStudy) {
            "0816K003SR,5.4,99,2.11,5.1e-9,53e-6,3.4e-5,1e-9,4.5,0.37\n",
            form));
   form.columns = {{"Masse", "mass [g]"}};
-  EXPECT_THAT(complaint("model,mass\na,1\n", form),
+  EXPECT_THAT(complaint("model,mass [kg]\na,1\n", form),
               HasSubstr("motors.columns names \"Masse\", which the header has not"));
   form.columns = {{"Masse", "weights"}};
   EXPECT_THAT(complaint("model,Masse\na,1\n", form),
