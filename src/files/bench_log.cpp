@@ -7,6 +7,7 @@
 #include "files/bench_columns.hpp"
 #include "files/bench_table.hpp"
 #include "files/read_number.hpp"
+#include "files/text_encoding.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/bench_file.hpp"
@@ -34,7 +35,8 @@ class LogReader {
   }
 
   BenchLog read(std::string_view text) {
-    const BenchTable table = detail::read_bench_table(text, file_, {request_.separator, request_.decimal});
+    const std::string utf8 = detail::decoded(text, file_, notes_.encoding);
+    const BenchTable table = detail::read_bench_table(utf8, file_, {request_.separator, request_.decimal});
     if (table.header.cells.empty())
       throw InputError(file_, 0, 0, "", "is empty; expected a header such as voltage_V,frequency_Hz,current_mean_mA");
     decimal_comma_ = table.decimal_comma;
@@ -48,7 +50,6 @@ class LogReader {
     });
     std::stable_sort(log_.rows.begin(), log_.rows.end(),
                      [&](const BenchRow& a, const BenchRow& b) { return set_on_bench(a) < set_on_bench(b); });
-    notes_.encoding = table.encoding;
     notes_.separator = table.separator;
     notes_.decimal_comma = table.decimal_comma;
     notes_.remarks = table.remarks;

@@ -25,7 +25,6 @@ struct TableForm {
 };
 
 struct BenchTable {
-  std::string encoding = "UTF-8";
   char separator = ',';
   bool decimal_comma = false;  ///< numbers are written 3,14
   int remarks = 0;             ///< lines of comments
@@ -36,13 +35,9 @@ struct BenchTable {
 /// A cell without a value: empty, NaN, #N/A and the like.
 bool is_missing(std::string_view cell);
 
-/// The text in UTF-8, which may come as UTF-8, as UTF-16 with its mark, or as Windows-1252; `encoding` tells
-/// which. Throws InputError where it is none of them.
-std::string decoded(std::string_view text, const std::string& file, std::string& encoding);
-
 /// Cells between commas, semicolons or tabs, with or without quotes, numbers with a decimal point or comma, remarks
 /// behind #, % or //, lines that end in any way. Throws InputError with a question where two readings are possible, and
 /// for rows that have not as many cells as the header.
-BenchTable read_bench_table(std::string_view text, const std::string& file, const TableForm& form = {});
+BenchTable read_bench_table(std::string_view utf8, const std::string& file, const TableForm& form = {});
 
 }  // namespace wingbeat::detail

@@ -8,6 +8,7 @@
 
 #include "files/motor_catalogue.hpp"
 #include "files/study_sections.hpp"
+#include "files/text_encoding.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/study/sampling.hpp"
@@ -335,8 +336,10 @@ class OptimiseReader : public detail::StudySections {
     if (const TomlNode* within = node.find("within_nominal_current")) {
       file.within_nominal_current = boolean(*within, "motors.within_nominal_current");
     }
-    file.motors = detail::parse_motor_catalogue(read_text_file(path), path.string(), gear, rest, file.study.design,
-                                                catalogue_form(node));
+    std::string encoding;
+    const std::string list = detail::decoded(read_text_file(path), path.string(), encoding);
+    file.motors =
+        detail::parse_motor_catalogue(list, path.string(), gear, rest, file.study.design, catalogue_form(node));
     if (std::none_of(file.motors.begin(), file.motors.end(), [](const auto& m) { return m.refused.empty(); })) {
       std::string reason = file.motors.empty() ? "holds no motors" : "holds no motor that can be tried";
       if (!file.motors.empty()) reason += fmt::format(": {}: {}", file.motors[0].model, file.motors[0].refused);

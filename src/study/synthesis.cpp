@@ -81,17 +81,17 @@ struct FourBarProblem {
   }
 };
 
-double objective(unsigned, const double* u, double*, void*) { return u[2]; }
-void constraint(unsigned m, double* result, unsigned, const double* u, double*, void* data) {
+double worst_cosine(unsigned, const double* u, double*, void*) { return u[2]; }
+void four_bar_excess(unsigned m, double* result, unsigned, const double* u, double*, void* data) {
   const auto excess = static_cast<const FourBarProblem*>(data)->excess(u);
   std::copy_n(excess.begin(), m, result);
 }
 
-using Point = std::array<double, FourBarProblem::size>;
+using FourBarPoint = std::array<double, FourBarProblem::size>;
 
 /// The best with half-strokes alike, r_c^2 + d^2 = l^2 + p^2: of these the transmission angle grows with the ground
 /// link, down to the shortest crank. False where even the most compact one has a crank too short.
-bool centric(const FourBarProblem& problem, Point& best) {
+bool centric(const FourBarProblem& problem, FourBarPoint& best) {
   const double r = std::sin(0.5 * problem.swing);
   const auto excess = [&](double log_d) {
     const double d = std::exp(log_d), l = std::sqrt(square(d) + square(r) - 1.0);
@@ -115,31 +115,32 @@ bool centric(const FourBarProblem& problem, Point& best) {
 }
 
 /// From the best points of a grid.
-bool search(const FourBarProblem& problem, Point& best) {
+bool search(const FourBarProblem& problem, FourBarPoint& best) {
   bool found = centric(problem, best);
   if (problem.quick_return == 0.0) return found;
   const double lowest = std::log(0.02), highest = std::log(10.0), last = pi - problem.swing;
   if (!(last > 0.0)) return found;
-  std::vector<Point> starts;
+  std::vector<FourBarPoint> starts;
   if (found) starts.push_back(best);
   constexpr int grid = 80;
   for (int a = 0; a <= grid; ++a) {
     for (int b = 1; b < grid; ++b) {
-      Point u{lowest + (highest - lowest) * a / grid, last * b / grid, 0.0};
+      FourBarPoint u{lowest + (highest - lowest) * a / grid, last * b / grid, 0.0};
       u[2] = problem.cosine(u.data());
       if (std::isfinite(u[2]) && problem.keeps(u.data())) starts.push_back(u);
     }
   }
   const std::size_t kept = std::min<std::size_t>(starts.size(), 5);
   std::partial_sort(starts.begin(), starts.begin() + std::ptrdiff_t(kept), starts.end(),
-                    [](const Point& a, const Point& b) { return a[2] < b[2]; });
+                    [](const FourBarPoint& a, const FourBarPoint& b) { return a[2] < b[2]; });
   for (std::size_t n = 0; n < kept; ++n) {
     nlopt::opt solver(nlopt::LN_COBYLA, FourBarProblem::size);
     solver.set_lower_bounds({lowest, 1e-6, -1.0});
     solver.set_upper_bounds({highest, last - 1e-6, 10.0});
-    solver.set_min_objective(&objective, nullptr);
+    solver.set_min_objective(&worst_cosine, nullptr);
     FourBarProblem asked = problem;
-    solver.add_inequality_mconstraint(&constraint, &asked, std::vector<double>(FourBarProblem::constraints, 1e-10));
+    solver.add_inequality_mconstraint(&four_bar_excess, &asked,
+                                      std::vector<double>(FourBarProblem::constraints, 1e-10));
     solver.set_xtol_abs(1e-10);
     solver.set_maxeval(4000);
     solver.set_initial_step(0.02);
@@ -153,8 +154,8 @@ bool search(const FourBarProblem& problem, Point& best) {
     } catch (const std::exception&) {
       // Rounding ended it: what was reached counts.
     }
-    Point end{u[0], u[1], problem.cosine(u.data())};
-    const Point& better = problem.keeps(end.data()) && end[2] < starts[n][2] ? end : starts[n];
+    FourBarPoint end{u[0], u[1], problem.cosine(u.data())};
+    const FourBarPoint& better = problem.keeps(end.data()) && end[2] < starts[n][2] ? end : starts[n];
     if (!found || better[2] < best[2]) best = better;
     found = true;
   }
@@ -179,7 +180,7 @@ double best_angle(const StrokeTarget& t, DeadCentres* centres = nullptr) {
   if (!(swing < pi)) return absent;
   const double quick_return = pi * (t.time_ratio - 1.0) / (t.time_ratio + 1.0);
   const FourBarProblem problem{swing, t.shortest / t.envelope, quick_return};
-  Point best{};
+  FourBarPoint best{};
   if (!search(problem, best) || !(best[2] < 1.0)) return absent;
   if (centres) *centres = problem.centres(best.data());
   return std::acos(best[2]);
