@@ -73,6 +73,7 @@ MOTORS = """[motors]
 catalogue = "{catalogue}"
 gear_ratio = 10
 mass_without = "2.5 g"
+within_nominal_current = false
 """
 SWEEP = """[study]
 vehicle = "friction2022-springs"
