@@ -1,5 +1,6 @@
 #include "study/pitch_search.hpp"
 
+#include <algorithm>
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 #include <optional>
@@ -41,27 +42,35 @@ RunResult run_at_angle_of_attack(Design<double> design, RunOptions options) {
   RunOptions trial = options;
   trial.waveform_rows = 0;
   trial.endurance = false;
-  const auto run_with = [&](double C, const RunOptions& how) {
+  // Where the angle falls below the coefficients' range before what else is asked for is reached, C_alpha is too large.
+  constexpr double below_range = -1.0;
+  std::optional<RunResult> left_range;
+  const auto angle_with = [&](double C) {
     design.aerodynamics.pitch_coefficient = C;
-    RunResult r = run_design(design, how);
-    if (!flaps_as_asked(r)) throw NoAngle{std::move(r)};
-    return r;
+    RunResult r = run_design(design, trial);
+    if (flaps_as_asked(r)) return r.metrics[Metric::angle_of_attack_min];
+    const bool flaps = r.status == FlappingStatus::flapping && r.search;
+    const auto by_angle = [](const DomainEvidence& e) { return e.limit == DomainLimit::angle_of_attack; };
+    if (!flaps || std::none_of(r.search->finding.limits.begin(), r.search->finding.limits.end(), by_angle)) {
+      throw NoAngle{std::move(r)};
+    }
+    left_range = std::move(r);
+    return below_range;
   };
   try {
     // The speed hardly depends on how the wings pitch: alpha = pi/2 - C_alpha |beta'| at the peak is near already.
-    const auto C_at_peak = [&](const RunResult& r) {
-      return (0.5 * pi - wanted / degrees_per_radian) / r.metrics[Metric::flapping_velocity_peak];
-    };
     const double given = design.aerodynamics.pitch_coefficient;
-    double C = C_at_peak(run_with(given > 0.0 ? given : 5e-3, trial));
-    C = C_at_peak(run_with(C, trial));
-    const auto excess = [&](double log_C) {
-      return run_with(std::exp(log_C), trial).metrics[Metric::angle_of_attack_min] - wanted;
-    };
+    double C = given > 0.0 ? given : 5e-3;
+    for (int n = 0; n < 3; ++n) {
+      const double angle = angle_with(C);
+      C *= angle == below_range ? 0.5 : (90.0 - wanted) / std::max(90.0 - angle, 1e-3);
+    }
+    const auto excess = [&](double log_C) { return angle_with(std::exp(log_C)) - wanted; };
     double low = std::log(C) - 0.01, high = std::log(C) + 0.01;
     double at_low = excess(low), at_high = excess(high);
     for (double step = 0.02; at_low < 0.0 && step < 4.0; step *= 2.0) at_low = excess(low -= step);
     for (double step = 0.02; at_high > 0.0 && step < 4.0; step *= 2.0) at_high = excess(high += step);
+    if (at_low < 0.0 && left_range) return *std::move(left_range);
     if (at_low < 0.0 || at_high > 0.0) {
       throw ParameterError("angle_of_attack", format("no C_alpha leads to %.4g deg at mid-stroke", wanted));
     }
@@ -69,7 +78,10 @@ RunResult run_at_angle_of_attack(Design<double> design, RunOptions options) {
     const auto found = boost::math::tools::toms748_solve(
         excess, low, high, at_low, at_high, [&](double a, double b) { return b - a < 1e-2 * options.tolerance; },
         rounds);
-    RunResult result = run_with(std::exp(0.5 * (found.first + found.second)), options);
+    // The last one of which all is known.
+    design.aerodynamics.pitch_coefficient = std::exp(found.first);
+    RunResult result = run_design(design, options);
+    if (!flaps_as_asked(result)) return result;
     result.pitch_coefficient = design.aerodynamics.pitch_coefficient;
     return result;
   } catch (NoAngle& none) {

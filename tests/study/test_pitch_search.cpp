@@ -67,6 +67,20 @@ TEST(PitchSearch, BesideALiftOrAFrequency) {
   EXPECT_NEAR(in_time.metrics[Metric::angle_of_attack_min], 40.0, 1e-3);
 }
 
+// On the way a trial's wings turn over before the power is reached: its C_alpha is too large, and the search goes on.
+TEST(PitchSearch, GoesBackFromTrialsThatLeaveTheCoefficientsRange) {
+  Design<double> d = reference_design();
+  d.aerodynamics.pitch_coefficient = 5e-3;
+  const RunResult known = run_design(d, {.tolerance = 1e-8, .angle_of_attack = 15.0 * degree});
+  const double power = known.metrics[Metric::power_electrical];
+  for (const double start : {1e-3, 5e-3, 20e-3}) {
+    d.aerodynamics.pitch_coefficient = start;
+    const RunResult r = run_design(d, {.tolerance = 1e-8, .power = power, .angle_of_attack = 15.0 * degree});
+    ASSERT_TRUE(r.pitch_coefficient.has_value()) << start << ": " << describe(r);
+    EXPECT_NEAR(*r.pitch_coefficient / *known.pitch_coefficient, 1.0, 1e-6) << start;
+  }
+}
+
 TEST(PitchSearch, WhatCannotBeIsSaid) {
   Design<double> d = reference_design();
   const RunResult much = run_design(d, {.lift = 5.0, .angle_of_attack = 45.0 * degree});
