@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "wingbeat/cycle/metric_values.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
