@@ -68,6 +68,38 @@ TEST(EnsembleKinds, EveryOneAgreesWithTheScalarSolver) {
   }
 }
 
+/// What drives the gearbox back depends on the friction that does not follow the load.
+TEST(EnsembleKinds, GearLossesUnderEveryFrictionLaw) {
+  const StartUp start_up = remembered_start_up();
+  std::mt19937_64 random(20261127);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  for (const auto& [law, largest] : {std::pair{FrictionLaw::none, 0.0},
+                                     {FrictionLaw::load_proportional, 3e-3},
+                                     {FrictionLaw::viscous, 1e-5},
+                                     {FrictionLaw::quadratic, 1e-7},
+                                     {FrictionLaw::constant, 3e-4}}) {
+    std::vector<EnsembleMember> members;
+    for (int n = 0; n < many_members / 80; ++n) {
+      Design<double> d = kind_design(KindBox::gear_loss, random);
+      d.friction = {law, largest * uniform(0.01, 1.0)};
+      // Without air, or without wings, what takes no power has means that are rounding.
+      const bool load_free = law != FrictionLaw::none && law != FrictionLaw::load_proportional;
+      Condition condition = Condition::air;
+      if (n % 4 == 0 && load_free) condition = Condition::wingless;
+      if (n % 4 == 1 && law != FrictionLaw::none) condition = Condition::vacuum;
+      members.push_back({resolve(d, condition), reporting_of(d)});
+    }
+    EnsembleOptions exact;
+    exact.scalar_only = true;
+    exact.tolerance = 1e-9;
+    const auto [flapping, by_packs, outside] =
+        agreement(solve(members, {}, start_up), solve(members, exact, start_up), 1e-6, 10.0, true);
+    EXPECT_GT(flapping, many_members / 200) << name_of(law);
+    EXPECT_GT(by_packs, flapping / 2) << name_of(law);
+    EXPECT_LE(outside, flapping / 50) << name_of(law);
+  }
+}
+
 /// Lanes tell lock from slow flapping; few designs are left to the scalar solver: those of cranks that statics must
 /// tell of, and a few more.
 TEST(EnsembleKinds, NearStallStatusesAreThoseOfTheScalarSolver) {

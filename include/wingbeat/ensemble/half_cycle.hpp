@@ -86,7 +86,8 @@ struct HalfCycle {
            S(1e-9) * typical_crank_lever(vehicle.transmission);
   }
   bool has_load_free_friction() const {
-    return any<S>(vehicle.friction.torque > S(0.0)) || any<S>(vehicle.friction.damping > S(0.0));
+    const Friction<S>& f = vehicle.friction;
+    return any<S>(f.torque > S(0.0)) || any<S>(f.damping > S(0.0)) || any<S>(f.quadratic > S(0.0));
   }
   /// Takes the side of the kink on which kink_margin_at() has the sign `side`, the rod force that of `force`.
   void choose_side(const S& side, const S& force) {
