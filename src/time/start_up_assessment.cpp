@@ -6,9 +6,8 @@
 namespace wingbeat {
 namespace {
 
-constexpr double tightest = 1e-11;  // what TransientOptions::tolerance admits
-/// Steps that an assessment may take, a few microseconds each, and what is left for its cycle in any case.
-constexpr long max_steps = 1000000, least_steps = 150000;
+constexpr double tightest = 1e-11;    // what TransientOptions::tolerance admits
+constexpr long least_steps = 150000;  ///< what is left for an assessment's cycle in any case
 
 }  // namespace
 
@@ -18,7 +17,7 @@ StartUp start_up_in_time(double tolerance, TimeIntegrator integrator) {
     options.integrator = integrator;
     options.tolerance = std::max(tolerance, tightest);
     options.metrics = false;
-    options.max_steps = max_steps;
+    const long max_steps = options.max_steps;  // as a simulation of its own, lest the two decide differently
     const TransientResult r = simulate_start_up(vehicle, options);
     StartUpOutcome outcome{r.status, r.settled, r.evidence, r.state, {}};
     if (r.status != FlappingStatus::flapping || !r.settled) return outcome;
