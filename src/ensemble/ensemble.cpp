@@ -183,7 +183,7 @@ class EnsembleRun {
                      : stop || loses || of_linkage ? Kinks::few
                                                    : Kinks::none,
             .gear_loss = loses,
-            .load_free_friction = v.friction.torque > 0.0 || v.friction.damping > 0.0 || v.friction.quadratic > 0.0,
+            .load_free_friction = load_free_friction(v.friction, 1.0, 1.0) > 0.0,
             .pitch_stop = stop,
             .added_mass = v.wings.added_inertia > 0.0,
             .virtual_work = v.transmission.slider_crank.formulation == Formulation::virtual_work,

@@ -85,10 +85,7 @@ struct HalfCycle {
     return half * configuration.kinematics.crank_jacobian - vehicle.friction.radius +
            S(1e-9) * typical_crank_lever(vehicle.transmission);
   }
-  bool has_load_free_friction() const {
-    const Friction<S>& f = vehicle.friction;
-    return any<S>(f.torque > S(0.0)) || any<S>(f.damping > S(0.0)) || any<S>(f.quadratic > S(0.0));
-  }
+  bool has_load_free_friction() const { return any<S>(load_free_friction(vehicle.friction, S(1.0), S(1.0)) > S(0.0)); }
   /// Takes the side of the kink on which kink_margin_at() has the sign `side`, the rod force that of `force`.
   void choose_side(const S& side, const S& force) {
     if (!has_gear_loss(vehicle.motor)) pitching = side;
