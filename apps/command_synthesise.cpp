@@ -114,7 +114,7 @@ int run(const SynthesiseArguments& a) {
   if (!a.vehicle.empty() && a.output.empty()) throw InputError("--vehicle", 0, 0, "", "needs -o, the file to write");
   const StrokeTarget target = target_of(a);
   const SynthesisedMechanism found = synthesised(type, target);
-  if (!found.found) throw InputError("synthesise", 0, 0, "", describe(target, found, type));
+  if (!found.found) throw InputError("synthesise", 0, 0, "", why_not_found(found, type));
   const std::optional<ClearanceCost> clearance = clearance_of(a, found);
   std::optional<OutputFile> output, plot;
   if (!a.output.empty()) output.emplace("-o", a.output, OutputRules{".toml", a.force});
@@ -166,9 +166,9 @@ void add_synthesise(CLI::App& program, Action& action) {
   add_json(command, a->json);
   command->footer(
       "Example:\n  wingbeat synthesise four-bar --stroke \"120 deg\" --envelope \"25 mm\" --stroke-ratio 2\n\n"
-      "Of all four-bars with that stroke, in that room, whose half-strokes are alike as far as asked for, it finds the\n"
-      "one with the largest least transmission angle between coupler and rocker; of slider-cranks the one with the\n"
-      "longest rod. --clearance tells what play in the joints does to stroke and phase.\n\n"
+      "Of all four-bars with that stroke, in that room, whose half-strokes are alike as far as asked for, it finds\n"
+      "the one with the largest least transmission angle between coupler and rocker; of slider-cranks the one with\n"
+      "the longest rod. --clearance tells what play in the joints does to stroke and phase.\n\n"
       "Exit status: 0 done, 2 bad input or usage, or no such mechanism.");
   command->callback([a, &action] {
     action = [a] {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "wingbeat/core/status.hpp"
+#include "wingbeat/parts/transmission_angle.hpp"
 
 namespace wingbeat {
 
@@ -22,15 +23,20 @@ void validate(const FourBar<double>& f) {
   require(r_c + link[3] < link[1] + link[2], crank_radius_key.path,
           "with the longest link must be shorter than the other two links together, or the crank cannot turn (Grashof)",
           "m", r_c);
-  // The transmission angle is extreme with the crank on the line of the axes.
-  for (const double diagonal : {d - r_c, d + r_c}) {
-    const double cosine = (square(p) + square(l) - square(diagonal)) / (2.0 * p * l);
+  const TransmissionCosines extremes = transmission_cosines(f);
+  for (const double cosine : {extremes.least, extremes.largest}) {
     const double mu = degrees_per_radian * std::acos(std::clamp(cosine, -1.0, 1.0));
     require(mu >= transmission_angle_min_deg && mu <= 180.0 - transmission_angle_min_deg,
             four_bar_key::coupler_length.path,
             "must keep the transmission angle between coupler and rocker within 5 to 175", "deg", mu);
   }
   require(four_bar_key::ground_angle, f.ground_angle);
+}
+
+TransmissionCosines transmission_cosines(const FourBar<double>& f) {
+  const double r_c = f.crank_radius, l = f.coupler_length, p = f.rocker_length, d = f.ground_length;
+  const auto cosine = [&](double diagonal) { return (square(p) + square(l) - square(diagonal)) / (2.0 * p * l); };
+  return {cosine(d - r_c), cosine(d + r_c)};
 }
 
 Reversals reversals(const FourBar<double>& f) {

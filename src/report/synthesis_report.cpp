@@ -8,7 +8,7 @@
 
 #include "report/described.hpp"
 #include "report/result_schemas.hpp"
-#include "wingbeat/parts/four_bar.hpp"
+#include "wingbeat/core/math.hpp"
 
 namespace wingbeat {
 namespace {
@@ -81,27 +81,20 @@ std::string text_synthesis(const SynthesisedMechanism& m, const std::optional<Cl
   return text + "\n" + transmission_section(m.transmission);
 }
 
-std::string describe(const StrokeTarget& target, const SynthesisedMechanism& m, TransmissionType type) {
-  std::string text = fmt::format("no {} has a stroke of {:.6g} deg", name_of(type), degrees(target.stroke));
-  if (target.stroke_ratio != 1.0) text += fmt::format(" at a stroke ratio of {:.4g}", target.stroke_ratio);
-  text += fmt::format(" within {:.4g} mm and links of at least {:.4g} mm", 1e3 * target.envelope,
-                      1e3 * (target.shortest > 0.0 ? target.shortest : 0.1 * target.envelope));
-  const double best = m.quality.transmission_angle;
-  if (type == TransmissionType::four_bar) {
-    const double wanted = std::max(degrees(target.transmission_angle), transmission_angle_min_deg);
-    text += fmt::format(" and a transmission angle of at least {:.4g} deg", wanted);
-    if (!std::isnan(best)) text += fmt::format("; the best one keeps {:.3g} deg", degrees(best));
-    text += std::isnan(m.ratio_needed)
-                ? "; nor has one of any larger stroke ratio"
-                : fmt::format("; a stroke ratio of {:.4g} would do, with a gear pair or string", m.ratio_needed);
-  } else {
-    if (target.transmission_angle > 0.0) {
-      text += fmt::format(" and a transmission angle of at least {:.4g} deg", degrees(target.transmission_angle));
-    }
-    if (!std::isnan(best)) text += fmt::format("; the best one keeps {:.3g} deg", degrees(best));
-    text += "; more room or shorter links would do";
+std::string why_not_found(const SynthesisedMechanism& m, TransmissionType type) {
+  const StrokeTarget& t = m.target;
+  std::string text = fmt::format("no {} has a stroke of {:.6g} deg", name_of(type), degrees(t.stroke));
+  if (t.stroke_ratio != 1.0) text += fmt::format(" at a stroke ratio of {:.4g}", t.stroke_ratio);
+  text += fmt::format(" within {:.4g} mm and links of at least {:.4g} mm", 1e3 * t.envelope, 1e3 * t.shortest);
+  if (t.transmission_angle > 0.0) {
+    text += fmt::format(" and a transmission angle of at least {:.4g} deg", degrees(t.transmission_angle));
   }
-  return text;
+  const double best = m.quality.transmission_angle;
+  if (!std::isnan(best)) text += fmt::format("; the best one keeps {:.3g} deg", degrees(best));
+  if (type == TransmissionType::slider_crank) return text + "; more room or shorter links would do";
+  return text + (std::isnan(m.ratio_needed)
+                     ? "; nor has one of any larger stroke ratio"
+                     : fmt::format("; a stroke ratio of {:.4g} would do, with a gear pair or string", m.ratio_needed));
 }
 
 namespace described {

@@ -8,6 +8,7 @@
 
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/parts/any_transmission.hpp"
+#include "wingbeat/parts/transmission_angle.hpp"
 
 namespace wingbeat {
 namespace {
@@ -20,16 +21,10 @@ struct DeadCentres {
   double direction(double angle) const { return std::atan2(p * std::sin(angle), 1.0 + p * std::cos(angle)); }
   double crank() const { return 0.5 * (distance(phi) - distance(phi + swing)); }
   double coupler() const { return 0.5 * (distance(phi) + distance(phi + swing)); }
+  FourBar<double> links() const { return {crank(), coupler(), p, 1.0}; }
   /// Crank angle of one half-stroke beyond 180 deg.
   double quick_return() const { return direction(phi + swing) - direction(phi); }
 };
-
-/// Cosines of the transmission angle where the crank is on the line of the axes: that of the least, and of 180 deg less
-/// the largest. Beyond 1 the crank does not turn.
-std::array<double, 2> extreme_cosines(double r, double l, double p, double d) {
-  const auto cosine = [&](double diagonal) { return (square(p) + square(l) - square(diagonal)) / (2.0 * p * l); };
-  return {cosine(d - r), -cosine(d + r)};
-}
 
 double swept_chord(double swing) { return swing < pi ? 2.0 * std::sin(0.5 * swing) : 2.0; }
 
@@ -61,24 +56,16 @@ struct FourBarProblem {
   std::array<double, constraints> excess(const double* u) const {
     const DeadCentres c = centres(u);
     const double r = c.crank(), l = c.coupler();
-    const std::array<double, 2> cosines = extreme_cosines(r, l, c.p, 1.0);
+    const TransmissionCosines cosines = transmission_cosines(c.links());
     const double shortest_here = shortest * envelope_of(r, l, c.p, 1.0, swing);
-    return {cosines[0] - u[2],
-            cosines[1] - u[2],
-            shortest_here - r,
-            std::max(r - c.p, r - 1.0),
-            c.quick_return() - quick_return,
-            -c.quick_return() - quick_return};
+    return {cosines.least - u[2],       -cosines.largest - u[2],         shortest_here - r,
+            std::max(r - c.p, r - 1.0), c.quick_return() - quick_return, -c.quick_return() - quick_return};
   }
   bool keeps(const double* u) const {
     const auto e = excess(u);
     return std::all_of(e.begin() + 2, e.end(), [](double x) { return x <= 1e-9; });
   }
-  double cosine(const double* u) const {
-    const DeadCentres c = centres(u);
-    const auto cosines = extreme_cosines(c.crank(), c.coupler(), c.p, 1.0);
-    return std::max(cosines[0], cosines[1]);
-  }
+  double cosine(const double* u) const { return transmission_cosines(centres(u).links()).worst(); }
 };
 
 double worst_cosine(unsigned, const double* u, double*, void*) { return u[2]; }
@@ -186,16 +173,12 @@ double best_angle(const StrokeTarget& t, DeadCentres* centres = nullptr) {
   return std::acos(best[2]);
 }
 
-double wanted_angle(const StrokeTarget& t) {
-  return std::max(t.transmission_angle, transmission_angle_min_deg / degrees_per_radian);
-}
-
 /// The least stroke ratio above `from` with a transmission angle wanted.
 double ratio_needed(StrokeTarget t) {
   const auto missing = [&](double ratio) {
     t.stroke_ratio = ratio;
     const double angle = best_angle(t);
-    return std::isnan(angle) ? 1.0 : wanted_angle(t) - angle;
+    return std::isnan(angle) ? 1.0 : t.transmission_angle - angle;
   };
   double below = t.stroke_ratio, above = below;
   while (missing(above) > 0.0) {
@@ -298,8 +281,7 @@ MechanismQuality mechanism_quality(const TransmissionDesign<double>& design) {
   if (design.type == TransmissionType::four_bar) {
     const FourBar<double> f = four_bar_from(design);
     const double r = f.crank_radius, l = f.coupler_length, p = f.rocker_length, d = f.ground_length;
-    const auto cosines = extreme_cosines(r, l, p, d);
-    q.transmission_angle = std::acos(std::max(cosines[0], cosines[1]));
+    q.transmission_angle = std::acos(transmission_cosines(f).worst());
     q.stroke = 2.0 * stroke_amplitude(f);
     q.envelope = envelope_of(r, l, p, d, q.stroke / f.stroke_ratio);
     q.shortest = std::min({r, l, p, d});
@@ -356,15 +338,17 @@ ClearanceCost clearance_cost(const TransmissionDesign<double>& design, double c)
 }
 
 SynthesisedMechanism synthesise_four_bar(const StrokeTarget& target) {
-  const StrokeTarget t = checked(target);
+  constexpr double least_angle = transmission_angle_min_deg / degrees_per_radian;
   SynthesisedMechanism result;
+  StrokeTarget& t = result.target = checked(target);
+  t.transmission_angle = std::max(t.transmission_angle, least_angle);
   DeadCentres centres{};
   const double angle = best_angle(t, &centres);
   result.quality.transmission_angle = angle;
-  if (angle > transmission_angle_min_deg / degrees_per_radian) {
+  if (angle > least_angle) {
     result.transmission = four_bar_of(centres, t);
     result.quality = mechanism_quality(result.transmission);
-    result.found = angle >= wanted_angle(t);
+    result.found = angle >= t.transmission_angle;
   }
   for (const double ratio : {1.0, 1.5, 2.0, 3.0, 4.0}) {
     StrokeTarget other = t;
@@ -376,10 +360,10 @@ SynthesisedMechanism synthesise_four_bar(const StrokeTarget& target) {
 }
 
 SynthesisedMechanism synthesise_slider_crank(const StrokeTarget& target) {
-  const StrokeTarget t = checked(target);
+  SynthesisedMechanism result;
+  const StrokeTarget& t = result.target = checked(target);
   require(t.stroke < pi, "stroke", "of a slider-crank must be < 180", "deg", degrees_per_radian * t.stroke);
   require(t.stroke_ratio == 1.0, "stroke_ratio", "of a slider-crank must be 1", "1", t.stroke_ratio);
-  SynthesisedMechanism result;
   const double tangent = std::tan(0.5 * t.stroke);
   const double r = t.shortest * std::max(1.0, tangent), H = r / tangent;
   const double across = std::sqrt(std::max(square(t.envelope - r) - square(H), 0.0));

@@ -17,7 +17,7 @@ std::string json_synthesis(const SynthesisedMechanism& mechanism, const std::opt
 /// [transmission] of a vehicle file, lengths in mm to nine digits.
 std::string transmission_section(const TransmissionDesign<double>& transmission);
 
-/// Why no mechanism was found for the target, and what would do, in a sentence.
-std::string describe(const StrokeTarget& target, const SynthesisedMechanism& mechanism, TransmissionType type);
+/// Why no mechanism of that type was found, and what would do, in a sentence.
+std::string why_not_found(const SynthesisedMechanism& mechanism, TransmissionType type);
 
 }  // namespace wingbeat

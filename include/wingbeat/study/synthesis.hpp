@@ -56,6 +56,7 @@ struct StrokeRatioChoice {
 };
 
 struct SynthesisedMechanism {
+  StrokeTarget target{};  ///< as searched: with the shortest link, and of a four-bar with the least angle that counts
   bool found = false;
   TransmissionDesign<double> transmission;  ///< the best one, also where its transmission angle is less than wanted
   MechanismQuality quality{};               ///< but for the transmission angle of it alone
