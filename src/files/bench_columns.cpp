@@ -34,6 +34,11 @@ std::vector<const NamedColumn*> listed(std::span<const ColumnName> known) {
   return list;
 }
 
+RecognisedColumn of_bench(RecognisedHeader found) {
+  return {static_cast<const ColumnName*>(found.column), found.factor, std::move(found.unit), found.renamed,
+          std::move(found.complaint)};
+}
+
 }  // namespace
 
 const ColumnName* column_named(std::string_view name, std::span<const ColumnName> known) {
@@ -41,9 +46,11 @@ const ColumnName* column_named(std::string_view name, std::span<const ColumnName
 }
 
 RecognisedColumn recognise(std::string_view header, std::span<const ColumnName> known) {
-  RecognisedHeader found = recognise_header(header, listed(known), aliases);
-  return {static_cast<const ColumnName*>(found.column), found.factor, std::move(found.unit), found.renamed,
-          std::move(found.complaint)};
+  return of_bench(recognise_header(header, listed(known), aliases));
+}
+
+RecognisedColumn recognise_stated(std::string_view name, std::string_view header, std::span<const ColumnName> known) {
+  return of_bench(recognise_stated(name, header, listed(known), aliases));
 }
 
 const std::vector<ColumnName>& metric_columns() {

@@ -37,4 +37,7 @@ struct RecognisedColumn {
 /// What a header means, as "current_mean_mA", "Lift (g)", "U [V]" or "Frequency / Hz".
 RecognisedColumn recognise(std::string_view header, std::span<const ColumnName> known);
 
+/// What a header means that [[log]] says to be `name`.
+RecognisedColumn recognise_stated(std::string_view name, std::string_view header, std::span<const ColumnName> known);
+
 }  // namespace wingbeat::detail

@@ -8,6 +8,7 @@
 
 #include "files/bench_columns.hpp"
 #include "files/input_errors.hpp"
+#include "files/table_form.hpp"
 #include "files/toml_fields.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/files/design_file.hpp"
@@ -159,7 +160,10 @@ class BenchReader {
           request.measured.push_back(item.text);
         }
       }
-      read_form(l, request);
+      detail::StatedTable stated = detail::stated_table(l, "lift_mean");
+      request.separator = stated.form.separator;
+      request.decimal = stated.form.decimal;
+      request.columns = std::move(stated.columns);
       const std::filesystem::path path = path_.parent_path() / file;
       std::string text;
       try {
@@ -175,28 +179,6 @@ class BenchReader {
     const auto sections = root_.tables("log");
     for (const TomlFields& l : sections) errors_.attempt([&] { read_one(l); });
     if (sections.empty()) root_.refuse("log", "missing: what was measured? Give [[log]] sections");
-  }
-
-  /// How the file is written, where it does not show.
-  static void read_form(const TomlFields& l, LogRequest& request) {
-    const auto one_of = [&](const char* key, std::string_view allowed, const char* expected) -> std::optional<char> {
-      const auto text = l.text(key);
-      if (!text) return std::nullopt;
-      if (text->size() != 1 || allowed.find((*text)[0]) == std::string_view::npos) {
-        l.refuse(l.at(key), key, fmt::format("must be {}, got {}", expected, in_quotes(*text)));
-      }
-      return (*text)[0];
-    };
-    request.separator = one_of("separator", ",;\t", "\",\", \";\" or \"\\t\"");
-    request.decimal = one_of("decimal", ".,", "\".\" or \",\"");
-    const TomlNode* columns = l.node().find("columns");
-    if (!columns) return;
-    const char* expected = "expected { \"header in the file\" = \"lift_mean\" }, or \"ignore\"";
-    if (columns->kind != TomlNode::Kind::table) l.refuse(*columns, "columns", expected);
-    for (const auto& [header, name] : columns->members) {
-      if (name.kind != TomlNode::Kind::text) l.refuse(name, "columns", expected);
-      request.columns.emplace_back(header, name.text);
-    }
   }
 
   void check_columns(const TomlFields& l, const BenchFit& fit) const {

@@ -88,16 +88,9 @@ class LogReader {
       if (header != cell.text) continue;
       if (name == ignored) return {nullptr, 1.0, "", false, false, cell.text};
       stated = true;
-      // The unit stands in the name given, "lift_mean_mN", or in the header.
-      found = detail::recognise(name, known_);
-      const ColumnName* column = found.column ? found.column : detail::column_named(name, known_);
-      if (!column)
+      found = detail::recognise_stated(name, cell.text, known_);
+      if (!found.column)
         refuse(line, cell.column, "", fmt::format("columns names {}, which is no quantity", in_quotes(name)));
-      if (!found.column || !found.complaint.empty()) {
-        const std::size_t bracket = std::min(cell.text.find_first_of("[("), cell.text.size());
-        found = detail::recognise(column->name + cell.text.substr(bracket), known_);
-      }
-      found.renamed = true;
     }
     if (!stated) found = detail::recognise(cell.text, known_);
     const auto& wanted = request_.measured;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace wingbeat::detail {
@@ -22,6 +23,13 @@ struct TableLine {
 struct TableForm {
   std::optional<char> separator;  ///< ',', ';' or '\t'
   std::optional<char> decimal;    ///< '.' or ','
+};
+
+/// Beside it what columns are that do not say so themselves.
+struct StatedTable {
+  TableForm form;
+  /// Header and name of a column, with a unit where the header has none, or "ignore".
+  std::vector<std::pair<std::string, std::string>> columns;
 };
 
 struct BenchTable {

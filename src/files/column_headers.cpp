@@ -165,4 +165,17 @@ RecognisedHeader recognise_header(std::string_view header, std::span<const Named
   return result;
 }
 
+RecognisedHeader recognise_stated(std::string_view name, std::string_view header,
+                                  std::span<const NamedColumn* const> known, std::span<const ColumnAlias> aliases) {
+  RecognisedHeader found = recognise_header(name, known, aliases);
+  const NamedColumn* column = found.column ? found.column : find_column(name, known, aliases);
+  if (!column) return {};
+  if (!found.column || !found.complaint.empty()) {
+    const std::size_t bracket = std::min(header.find_first_of("[("), header.size());
+    found = recognise_header(column->name + std::string(header.substr(bracket)), known, aliases);
+  }
+  found.renamed = true;
+  return found;
+}
+
 }  // namespace wingbeat::detail

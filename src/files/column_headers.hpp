@@ -38,4 +38,9 @@ const NamedColumn* find_column(std::string_view name, std::span<const NamedColum
 RecognisedHeader recognise_header(std::string_view header, std::span<const NamedColumn* const> known,
                                   std::span<const ColumnAlias> aliases);
 
+/// What a header means that is stated to be a column: the unit stands in the name given, as "lift_mean_mN", or in the
+/// header. No column where the name is none.
+RecognisedHeader recognise_stated(std::string_view name, std::string_view header,
+                                  std::span<const NamedColumn* const> known, std::span<const ColumnAlias> aliases);
+
 }  // namespace wingbeat::detail

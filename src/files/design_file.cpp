@@ -223,12 +223,7 @@ class Reader {
     if (!choice) {
       value->origin.refuse(std::string(key.path), fmt::format("needs {}, which is not given", requirement.path));
     }
-    const bool synthesis = key.path == "transmission.stroke_amplitude" && choice->text == "four-bar";
-    value->origin.refuse(
-        std::string(key.path),
-        fmt::format("belongs to {0} = {1}, but {0} is {2}{3}", requirement.path, fmt::join(requirement.values, " or "),
-                    in_quotes(choice->text),
-                    synthesis ? "; wingbeat synthesise four-bar --stroke ... finds links with that stroke" : ""));
+    value->origin.refuse(std::string(key.path), no_place_message(key.path, requirement, choice->text));
   }
 
   void read_formulation(TransmissionDesign<double>& transmission) const {

@@ -143,11 +143,11 @@ struct Place {
 
 class Catalogue {
  public:
-  Catalogue(std::string_view text, const std::string& name, const CatalogueForm& form)
-      : name_(name), form_(form), table_(read_bench_table(text, name, form.table)) {
+  Catalogue(std::string_view text, const std::string& name, const StatedTable& stated)
+      : name_(name), stated_(stated), table_(read_bench_table(text, name, stated.form)) {
     for (const NamedColumn& c : catalogue_columns()) known_.push_back(&c);
     for (std::size_t n = 0; n < table_.header.cells.size(); ++n) place(n);
-    for (const auto& [header, meaning] : form.columns) {
+    for (const auto& [header, meaning] : stated.columns) {
       const auto has = [&, &h = header](const TableCell& cell) { return cell.text == h; };
       if (std::none_of(table_.header.cells.begin(), table_.header.cells.end(), has)) {
         refuse(table_.header.number, 1, "", "motors.columns names " + in_quotes(header) + ", which the header has not");
@@ -189,29 +189,21 @@ class Catalogue {
 
   void place(std::size_t n) {
     const TableCell& cell = table_.header.cells[n];
-    std::string read_as = cell.text;
+    RecognisedHeader found;
     bool mapped = false;
-    for (const auto& [header, meaning] : form_.columns) {
+    for (const auto& [header, meaning] : stated_.columns) {
       if (header != cell.text) continue;
       if (meaning == "ignore") return;
       mapped = true;
-      read_as = meaning;
-      // Without a unit of its own the name takes that of the header.
-      const std::size_t bracket = cell.text.find_last_of("([");
-      if (meaning.find_first_of("([") == std::string::npos && bracket != std::string::npos) {
-        read_as += " " + cell.text.substr(bracket);
-      }
+      found = recognise_stated(meaning, header, known_, aliases);
+      if (found.column) continue;
+      std::string names;
+      for (const NamedColumn* c : known_) names += (names.empty() ? "" : ", ") + c->name;
+      refuse(table_.header.number, cell.column, "",
+             fmt::format("motors.columns names {}, which is none of {}", in_quotes(meaning), names));
     }
-    const RecognisedHeader found = recognise_header(read_as, known_, aliases);
-    if (!found.column) {
-      if (mapped) {
-        std::string names;
-        for (const NamedColumn* c : known_) names += (names.empty() ? "" : ", ") + c->name;
-        refuse(table_.header.number, cell.column, "",
-               fmt::format("motors.columns names {}, which is none of {}", in_quotes(read_as), names));
-      }
-      return;
-    }
+    if (!mapped) found = recognise_header(cell.text, known_, aliases);
+    if (!found.column) return;
     if (!found.complaint.empty()) {
       if (found.renamed && !mapped) return;  // something else of that name
       refuse(table_.header.number, cell.column, cell.text,
@@ -233,7 +225,7 @@ class Catalogue {
   }
 
   const std::string& name_;
-  const CatalogueForm& form_;
+  const StatedTable& stated_;
   BenchTable table_;
   std::vector<const NamedColumn*> known_;
   std::map<std::string, Place, std::less<>> places_;
@@ -243,8 +235,8 @@ class Catalogue {
 
 std::vector<MotorCandidate> parse_motor_catalogue(std::string_view text, const std::string& name, double gear,
                                                   std::optional<double> rest, const Design<double>& design,
-                                                  const CatalogueForm& form) {
-  const Catalogue catalogue(text, name, form);
+                                                  const StatedTable& stated) {
+  const Catalogue catalogue(text, name, stated);
   std::vector<MotorCandidate> motors;
   for (const TableLine& row : catalogue.rows()) {
     const auto number = [&](std::string_view column) { return catalogue.number(row, column); };

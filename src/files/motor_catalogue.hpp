@@ -4,7 +4,6 @@
 #include <optional>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "files/bench_table.hpp"
@@ -12,13 +11,6 @@
 #include "wingbeat/files/optimise_file.hpp"
 
 namespace wingbeat::detail {
-
-/// How a list is written, where it does not show by itself.
-struct CatalogueForm {
-  TableForm table;
-  /// Header and what it is: the name of a column, with a unit where the header has none, or "ignore".
-  std::vector<std::pair<std::string, std::string>> columns;
-};
 
 /// Columns that a list may have; others are passed over.
 const std::vector<NamedColumn>& catalogue_columns();
@@ -28,6 +20,6 @@ const std::vector<NamedColumn>& catalogue_columns();
 /// with names and units as manufacturers write them. Throws InputError, naming the file.
 std::vector<MotorCandidate> parse_motor_catalogue(std::string_view text, const std::string& file_name, double gear,
                                                   std::optional<double> rest, const Design<double>& design,
-                                                  const CatalogueForm& form = {});
+                                                  const StatedTable& stated = {});
 
 }  // namespace wingbeat::detail

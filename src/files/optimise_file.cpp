@@ -8,6 +8,7 @@
 
 #include "files/motor_catalogue.hpp"
 #include "files/study_sections.hpp"
+#include "files/table_form.hpp"
 #include "files/text_encoding.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -338,36 +339,14 @@ class OptimiseReader : public detail::StudySections {
     }
     std::string encoding;
     const std::string list = detail::decoded(read_text_file(path), path.string(), encoding);
-    file.motors =
-        detail::parse_motor_catalogue(list, path.string(), gear, rest, file.study.design, catalogue_form(node));
+    file.motors = detail::parse_motor_catalogue(
+        list, path.string(), gear, rest, file.study.design,
+        detail::stated_table(TomlFields(this->file(), "motors", node), "torque_constant"));
     if (std::none_of(file.motors.begin(), file.motors.end(), [](const auto& m) { return m.refused.empty(); })) {
       std::string reason = file.motors.empty() ? "holds no motors" : "holds no motor that can be tried";
       if (!file.motors.empty()) reason += fmt::format(": {}: {}", file.motors[0].model, file.motors[0].refused);
       refuse(name, "motors.catalogue", reason);
     }
-  }
-
-  detail::CatalogueForm catalogue_form(const TomlNode& node) {
-    detail::CatalogueForm form;
-    const auto sign = [&](const char* key, std::string_view allowed, const char* expected) -> std::optional<char> {
-      const TomlNode* value = node.find(key);
-      if (!value) return std::nullopt;
-      const std::string where = std::string("motors.") + key, text = text_of(*value, where, expected);
-      if (text.size() != 1 || allowed.find(text[0]) == std::string_view::npos) {
-        refuse(*value, where, std::string("must be ") + expected);
-      }
-      return text[0];
-    };
-    form.table.separator = sign("separator", ",;\t", R"(",", ";" or "\t")");
-    form.table.decimal = sign("decimal", ".,", R"("." or ",")");
-    if (const TomlNode* columns = node.find("columns")) {
-      const char* expected = "headers with what they are, as { \"R (Ohm)\" = \"armature_resistance\" }";
-      if (columns->kind != Kind::table) refuse(*columns, "motors.columns", std::string("must be ") + expected);
-      for (const auto& [header, meaning] : columns->members) {
-        form.columns.emplace_back(header, text_of(meaning, "motors.columns", expected));
-      }
-    }
-    return form;
   }
 
   fs::path folder_;

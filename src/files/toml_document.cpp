@@ -429,4 +429,14 @@ void apply_overrides(Document& document, std::span<const Setting> settings, std:
   errors.refuse();
 }
 
+std::string no_place_message(std::string_view path, const Requirement& requirement, std::string_view choice) {
+  std::string text = fmt::format("belongs to {0} = {1}, but {0} is {2}", requirement.path,
+                                 fmt::join(requirement.values, " or "), in_quotes(choice));
+  // A four-bar's stroke follows from its links.
+  if (path == "transmission.stroke_amplitude" && choice == "four-bar") {
+    text += "; wingbeat synthesise four-bar --stroke ... finds links with that stroke";
+  }
+  return text;
+}
+
 }  // namespace wingbeat

@@ -93,4 +93,8 @@ struct Setting {
 /// the others being applied.
 void apply_overrides(Document& document, std::span<const Setting> settings, std::span<const std::string> overrides);
 
+struct Requirement;
+/// Why a key has no place beside a choice that does not allow it, and what takes its place.
+std::string no_place_message(std::string_view path, const Requirement& requirement, std::string_view choice);
+
 }  // namespace wingbeat

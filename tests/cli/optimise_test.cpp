@@ -109,13 +109,15 @@ TEST_F(Optimise, ACatalogueOfMotorsExplainsEveryRow) {
 }
 
 TEST_F(Optimise, AMotorKeepsItsNominalCurrent) {
-  const auto with = [&](const char* nominal, const std::string& keys = "") {
-    std::ofstream(path("motors.csv"))
-        << "Type;R [ohm];k_t [mN m/A];Rotor inertia [kg m2];L [mH];viscous_damping [N m s/rad];Rated current [A];ratio\n"
-        << "own;9;10;1,5e-7;29;3,6e-6;" << nominal << ";20\n";
-    const std::string motors = "[motors]\ncatalogue = \"motors.csv\"\ngear_ratio = 1\n" + keys;
-    return run({"optimise", study(motors + objective + voltage + hover), "--json"}).json()["motors"][0]["result"];
-  };
+  const auto with =
+      [&](const char* nominal, const std::string& keys = "") {
+        std::ofstream(path("motors.csv"))
+            << "Type;R [ohm];k_t [mN m/A];Rotor inertia [kg m2];L [mH];viscous_damping [N m s/rad];Rated current [A];"
+               "ratio\n"
+            << "own;9;10;1,5e-7;29;3,6e-6;" << nominal << ";20\n";
+        const std::string motors = "[motors]\ncatalogue = \"motors.csv\"\ngear_ratio = 1\n" + keys;
+        return run({"optimise", study(motors + objective + voltage + hover), "--json"}).json()["motors"][0]["result"];
+      };
   const Json free = with("");
   const double current = free["metrics"]["current_rms_a"].get<double>();
   EXPECT_EQ(with("5,0"), free);

@@ -9,17 +9,17 @@
 namespace wingbeat {
 namespace {
 
-using detail::CatalogueForm, detail::parse_motor_catalogue;
+using detail::StatedTable, detail::parse_motor_catalogue;
 using testing::HasSubstr;
 
-MotorCandidate only(const std::string& text, const CatalogueForm& form = {}) {
+MotorCandidate only(const std::string& text, const StatedTable& form = {}) {
   const std::vector<MotorCandidate> motors =
       parse_motor_catalogue(text, "list.csv", 20.0, 0.002, reference_design(), form);
   EXPECT_EQ(motors.size(), 1U);
   return motors.at(0);
 }
 
-std::string complaint(const std::string& text, const CatalogueForm& form = {}) {
+std::string complaint(const std::string& text, const StatedTable& form = {}) {
   try {
     parse_motor_catalogue(text, "list.csv", 20.0, 0.002, reference_design(), form);
   } catch (const InputError& error) {
@@ -58,7 +58,7 @@ TEST(MotorCatalogue, NamesUnitsAndSignsInUse) {
 }
 
 TEST(MotorCatalogue, ColumnsAreNamedByTheStudy) {
-  CatalogueForm form;
+  StatedTable form;
   form.columns = {{"Bestellnummer", "model"},
                   {"Widerstand", "armature_resistance [ohm]"},
                   {"Konstante (mN m/A)", "torque_constant"},
