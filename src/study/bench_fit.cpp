@@ -92,7 +92,9 @@ void check_fit(const BenchFit& fit) {
     }
   }
   if (fit.design.supply.type != SupplyType::constant && !drive_of(fit.design).alternating) {
-    throw ParameterError("supply.type", "bench data are fitted with a constant supply, which a battery gives way to");
+    throw ParameterError(
+        "supply.type",
+        "bench data are fitted with a constant supply, or with a battery, for which the bench's supply stands in");
   }
   for (const BenchLog& log : fit.logs) {
     for (const MeasuredQuantity& q : log.columns) {

@@ -20,6 +20,12 @@ Vehicle<double> resolved(Design<double> design, Condition condition) {
 
 }  // namespace
 
+double battery_current(const Metrics<double>& metrics, double duty, double E, double R_i, bool power_passed_on) {
+  if (!power_passed_on) return duty * metrics[Metric::current_mean];
+  const double P_e = metrics[Metric::power_electrical];
+  return 2.0 * P_e / (E + std::sqrt(square(E) - 4.0 * R_i * P_e));
+}
+
 FlightMoments::FlightMoments(const Design<double>& design, const EnduranceOptions& options)
     : battery_(design.supply.battery),
       bridged_(design.supply.type == SupplyType::battery_sine),
@@ -87,14 +93,9 @@ BatteryLoad FlightMoments::load_of(const FlightMoment& moment, double voltage) c
   const Metrics<double>& m = moment.metrics;
   const double R_i = source_resistance(battery_);
   const bool passed_on = bridged_ || std::isfinite(m[Metric::power_electronics]);
-  if (!passed_on) {
-    const double current = moment.duty * m[Metric::current_mean];
-    return {voltage - R_i * current, current, R_i * square(moment.duty * m[Metric::current_rms])};
-  }
-  // The smaller of the two currents that give the power.
-  const double P_e = m[Metric::power_electrical],
-               current = 2.0 * P_e / (voltage + std::sqrt(square(voltage) - 4.0 * R_i * P_e));
-  return {voltage - R_i * current, current, R_i * square(current)};
+  const double current = battery_current(m, moment.duty, voltage, R_i, passed_on);
+  const double heating = passed_on ? current : moment.duty * m[Metric::current_rms];
+  return {voltage - R_i * current, current, R_i * square(heating)};
 }
 
 std::optional<EnduranceEnd> FlightMoments::end_at(const FlightMoment& moment, double voltage) const {

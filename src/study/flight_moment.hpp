@@ -26,6 +26,14 @@ struct BatteryLoad {
   double internal_power;    ///< [W]
 };
 
+/// The mean current from the battery at a duty D [A]: that of the motor times D, or, where electronics or a bridge pass
+/// the power on, the smaller of the two that give it (P_e the mean electrical power).
+/// \f[
+/// I = D\, \overline{i} \qquad \text{or} \qquad (E - R_\mathrm{i} I)\, I = P_\mathrm{e}
+/// \f]
+double battery_current(const Metrics<double>& metrics, double duty, double open_circuit_voltage, double resistance,
+                       bool power_passed_on);
+
 class FlightMoments {
  public:
   using Temperatures = std::optional<MotorTemperatures<double>>;

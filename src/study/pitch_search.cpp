@@ -78,7 +78,7 @@ RunResult run_at_angle_of_attack(Design<double> design, RunOptions options) {
     const auto found = boost::math::tools::toms748_solve(
         excess, low, high, at_low, at_high, [&](double a, double b) { return b - a < 1e-2 * options.tolerance; },
         rounds);
-    // The last one of which all is known.
+    // The smaller C_alpha of the last bracket, with which the angle does not leave the range.
     design.aerodynamics.pitch_coefficient = std::exp(found.first);
     RunResult result = run_design(design, options);
     if (!flaps_as_asked(result)) return result;

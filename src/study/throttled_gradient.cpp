@@ -4,6 +4,7 @@
 #include <boost/math/tools/roots.hpp>
 #include <cmath>
 
+#include "study/flight_moment.hpp"
 #include "study/hover_throttle.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/study/hold.hpp"
@@ -43,8 +44,7 @@ class ThrottledGradient {
     Moment moment{open_circuit_voltage(d.supply.battery, charge), source_resistance(d.supply.battery), 0.0, {}, {}, {}};
     const double E = moment.E, R = moment.R, i = m[Metric::current_mean], D = found.voltage / E;
     const bool passed_on = std::isfinite(m[Metric::power_electronics]);
-    const double P = m[Metric::power_electrical];
-    moment.I = passed_on ? 2.0 * P / (E + std::sqrt(square(E) - 4.0 * R * P)) : D * i;
+    moment.I = battery_current(m, D, E, R, passed_on);
     for (std::size_t k = 0; k < parameters_.size(); ++k) {
       const auto [by_E, by_R] = of_battery(d, parameters_[k]);
       const auto by = [&](Metric metric) { return g.by_parameter[k][std::size_t(metric)]; };
