@@ -80,7 +80,8 @@ void power_group(Table& table, const Metrics<double>& m, bool piezo) {
     power("  pitch hinges", a.hinge, "damping, friction, torsion, impacts on stops");
   const bool hinged = std::isfinite(m[Metric::power_hinge]);
   power("  aerodynamic", a.aerodynamic, hinged ? "M_aero beta' + M_pitch psi'" : "M_aero beta'");
-  power("  formulation residual", a.residual, "F (h omega - g beta')");
+  const bool rounding = std::abs(a.residual) < 1e-14 * std::abs(a.electrical);
+  power("  formulation residual", rounding ? 0.0 : a.residual, "F (h omega - g beta')");
   const double error = std::abs(a.imbalance / a.electrical);
   table.line("  energy-balance error", readable(a.imbalance, "W"),
              std::isfinite(error) ? fmt::format("{:>9.0e}   input minus the above", error)
