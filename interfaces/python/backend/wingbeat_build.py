@@ -3,11 +3,14 @@
 Settings of `pip install --config-settings=NAME=VALUE .`:
   build-dir  a build folder, configured before or not; default build/python
   jobs       compilations at a time; default: as many as there are cores
+  progress   no: nothing on the terminal. Otherwise lines there say how far compiling is, which pip, unless it is given
+             -v, keeps to itself with all that a build prints.
 """
 
 from __future__ import annotations
 
 import base64
+import contextlib
 import hashlib
 import os
 import pathlib
@@ -17,8 +20,10 @@ import sys
 import sysconfig
 import tarfile
 import tempfile
+import time
 import tomllib
 import zipfile
+from typing import TextIO
 
 ROOT = pathlib.Path(__file__).resolve().parents[3]
 # The earliest time that a zip archive can state, so that two builds are the same.
@@ -36,9 +41,8 @@ def _version() -> str:
     return found[1]
 
 
-def _build(settings: dict | None) -> pathlib.Path:
-    """The build folder, with the module built."""
-    settings = settings or {}
+def _configure(settings: dict) -> pathlib.Path:
+    """The build folder, configured."""
     folder = pathlib.Path(settings.get("build-dir", ROOT / "build" / "python")).resolve()
     # A build folder outlives the virtual environment.
     python = getattr(sys, "_base_executable", sys.executable)
@@ -47,9 +51,70 @@ def _build(settings: dict | None) -> pathlib.Path:
         options += ["-G", "Ninja", "-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_UNITY_BUILD=ON", "-DWINGBEAT_PROGRAM=OFF"]
         options += ["-DWINGBEAT_TESTS=OFF"]
     subprocess.run(["cmake", "-S", ROOT, "-B", folder, *options], check=True)
-    jobs = settings.get("jobs", os.cpu_count() or 1)
-    subprocess.run(["cmake", "--build", folder, "--target", "wingbeat_python", "-j", str(jobs)], check=True)
     return folder
+
+
+def _build(settings: dict | None) -> pathlib.Path:
+    """The build folder, with the module built."""
+    settings = settings or {}
+    folder = _configure(settings)
+    jobs = settings.get("jobs", os.cpu_count() or 1)
+    command = ["cmake", "--build", os.fspath(folder), "--target", "wingbeat_python", "-j", str(jobs)]
+    with contextlib.ExitStack() as stack:
+        terminal = None
+        if settings.get("progress", "yes") != "no":
+            with contextlib.suppress(OSError):  # there is none
+                terminal = stack.enter_context(open("/dev/tty", "w", encoding="utf-8"))
+        _compile(command, Progress(terminal, folder))
+    return folder
+
+
+def _compile(command: list[str], progress: Progress) -> None:
+    """Runs a build, whose lines go on to where they went as they come, and reports them."""
+    begin = time.monotonic()
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace") as build:
+        assert build.stdout
+        for line in build.stdout:
+            sys.stdout.write(line)
+            sys.stdout.flush()
+            progress.read(line, time.monotonic() - begin)
+    if build.returncode != 0:
+        raise subprocess.CalledProcessError(build.returncode, command)
+
+
+class Progress:
+    """Says on a terminal, in lines of its own, how far a build is: at the start, at every tenth and every minute."""
+
+    STEP = re.compile(r"\[\s*(\d+)/(\d+)\]|\[\s*(\d+)%\]")  # of Ninja, and of Make
+
+    def __init__(self, terminal: TextIO | None, folder: pathlib.Path) -> None:
+        self.terminal = terminal
+        self.folder = folder
+        self.share = -1.0
+        self.seconds = 0.0
+
+    def read(self, line: str, seconds: float) -> None:
+        """A line of the build, so long after its begin."""
+        step = self.STEP.match(line)
+        if not step or self.terminal is None:
+            return
+        done, steps = (int(step[1]), int(step[2])) if step[1] else (int(step[3]), 100)
+        share = done / max(steps, 1)
+        if self.share < 0.0:
+            # pip's own line is not ended yet.
+            self.say(f"compiling in {self.folder}; pip install -v shows every line", start="\n")
+        elif int(10 * share) <= int(10 * self.share) and seconds < self.seconds + 60.0:
+            return
+        self.share, self.seconds = share, seconds
+        self.say(f"{100 * share:3.0f} % of {steps} steps, {int(seconds) // 60}:{int(seconds) % 60:02d} min" if step[1]
+                 else f"{100 * share:3.0f} %, {int(seconds) // 60}:{int(seconds) % 60:02d} min")
+
+    def say(self, text: str, start: str = "\r\033[K") -> None:
+        """A line, in place of the spinner that pip turns at the left edge."""
+        assert self.terminal
+        with contextlib.suppress(OSError):
+            self.terminal.write(f"{start}  wingbeat: {text}\n")
+            self.terminal.flush()
 
 
 def _metadata(requires: str) -> str:
@@ -85,6 +150,15 @@ def _pack(wheel: pathlib.Path, files: dict[str, bytes]) -> None:
             digest = base64.urlsafe_b64encode(hashlib.sha256(content).digest()).rstrip(b"=").decode()
             record.append(f"{name},sha256={digest},{len(content)}")
         add(f"{info}/RECORD", "\n".join([*record, f"{info}/RECORD,,", ""]).encode())
+
+
+def prepare_metadata_for_build_wheel(metadata_directory, config_settings=None):  # noqa: ANN001, ANN201
+    """What pip asks for first: without it, it would build the wheel to see the metadata."""
+    requires = (_configure(config_settings or {}) / "python" / "requires.txt").read_text()
+    info = pathlib.Path(metadata_directory) / f"wingbeat-{_version()}.dist-info"
+    info.mkdir()
+    (info / "METADATA").write_text(_metadata(requires), encoding="utf-8")
+    return info.name
 
 
 def build_wheel(wheel_directory, config_settings=None, metadata_directory=None):  # noqa: ANN001, ANN201
