@@ -7,11 +7,11 @@ import re
 groups = [
     ("vehicles", "Vehicles and quantities",
      "What a vehicle file holds: read it, look at its keys, change them.",
-     ["read", "Vehicle", "Section", "Quantity", "parameters", "Parameter", "InputError"]),
+     ["read", "shipped", "Vehicle", "Section", "Quantity", "parameters", "Parameter", "InputError"]),
     ("runs", "One vehicle", "Steady flapping, start-up, and what comes of them.",
      ["solve", "RunResult", "EnergyBalance", "metrics", "Metric", "simulate", "StartUp", "Event"]),
     ("ensembles", "Many vehicles", "Arrays of designs and sweeps over their keys.",
-     ["solve_columns", "Ensemble", "sweep", "open_dataset"]),
+     ["solve_columns", "Ensemble", "sweep", "SweepData", "open_dataset"]),
     ("studies", "Studies", "Optima, tolerances, fits, flights and motors: the studies of the program.",
      ["optimise", "Found", "Front", "OwnOptimum", "tolerance", "fit", "endurance", "Flight", "identify_motor",
       "Identification", "StudyResult"]),
@@ -20,7 +20,7 @@ groups = [
     ("parts", "Parts", "Curves of a motor, of force coefficients and of a transmission.",
      ["motor_curves", "coefficient_curves", "kinematics"]),
 ]
-titles = ("Parameters", "Attributes", "Returns", "Raises", "Example")
+titles = ("Parameters", "Attributes", "Returns", "Raises", "Notes", "Examples")
 special = {"__version__"}
 
 
@@ -39,6 +39,11 @@ class Package:
                       if isinstance(statement, ast.ImportFrom) and statement.level for name in statement.names}
         self.public = next([ast.literal_eval(element) for element in statement.value.elts] for statement in start.body
                            if isinstance(statement, ast.Assign) and statement.targets[0].id == "__all__")
+        # Names that are imported when they are first asked for.
+        late = {name.name: (one.module, name.name) for statement in start.body if isinstance(statement, ast.If)
+                for one in statement.body if isinstance(one, ast.ImportFrom) for name in one.names}
+        self.homes |= late
+        self.public += list(late)
         # Modules without an underscore are public as well.
         self.modules = [name for name in self.trees if not name.startswith("_")]
 
@@ -141,23 +146,26 @@ def parameters_of(node, method=False):
 
 
 def parts_of(doc):
-    """A docstring as its text and its sections: {"": text, "Parameters": [(name, meaning), ...], ...}."""
+    """A docstring in the form of numpydoc, by section: {"": text, "Parameters": [(name, meaning), ...], ...}. Of
+    "Returns" the name is the type. Notes join the text."""
     pieces = re.split(rf"^({'|'.join(titles)})\n-+\n", doc or "", flags=re.M)
     found = {"": pieces[0].strip()}
     for title, body in zip(pieces[1::2], pieces[2::2]):
-        if title == "Example":
-            found[title] = body.strip("\n")
-            continue
-        # What follows the last entry after an empty line is text again.
-        body, _, after = body.strip("\n").partition("\n\n")
-        if title == "Returns":
-            found[title] = re.sub(r"\s*\n\s*", " ", body)
+        body = body.strip("\n")
+        if title == "Examples":
+            found[title] = body
+        elif title == "Notes":
+            found[""] += "\n\n" + body
         else:
-            found[title] = [tuple(part.strip() for part in re.sub(r"\s*\n\s+", " ", row).partition(" : ")[::2])
+            found[title] = [(row.split("\n")[0].partition(" : ")[0], " ".join(row.split("\n", 1)[-1].split()))
                             for row in re.split(r"\n(?=\S)", body)]
-        if after.strip():
-            found[""] += "\n\n" + after.strip()
     return found
+
+
+def examples(body, links):
+    """Examples: what is typed and shown as blocks, sentences between them as text."""
+    return "\n".join(f"```pycon\n{block}\n```\n" if block.startswith(">>>") else prose(block, links) + "\n"
+                     for block in body.split("\n\n"))
 
 
 def escaped(text):
@@ -226,8 +234,31 @@ class Reference:
             signature(called, node, method) for node in shown) + "\n```\n"]
         parts = parts_of(ast.get_docstring(main))
         lines.append(prose(parts[""], self.links) + "\n")
-        lines.append(self.sections(parts, parameters_of(shown[0] if overloads else main, method)))
+        parts = self.of_function(main) | parts
+        lines.append(self.sections(parts, parameters_of(main, method)))
         return "\n".join(lines)
+
+    def of_function(self, node):
+        """Of a method that is a function of the package, `@method_of("solve")`: what the function's docstring says of
+        the other arguments, of what comes back and of errors."""
+        names = [one.args[0].value for one in node.decorator_list
+                 if isinstance(one, ast.Call) and ast.unparse(one.func) == "method_of"]
+        if not names:
+            return {}
+        _, nodes = self.package.of(names[0])
+        found = parts_of(ast.get_docstring(nodes[-1]))
+        returned = [(names[0], "")] if isinstance(nodes[-1], ast.ClassDef) else found.get("Returns", [])
+        own = {one.arg for one in node.args.args + node.args.kwonlyargs}
+        kept = [row for row in found["Parameters"] if own.intersection(row[0].split(", "))]
+        return {"Parameters": kept, "Returns": returned, "Raises": found.get("Raises", [])}
+
+    def inherited(self, module, node):
+        """The bodies of base classes that are not public themselves."""
+        for base in map(ast.unparse, node.bases):
+            homes = [one.module for one in self.package.trees[module].body if isinstance(one, ast.ImportFrom)
+                     and one.level and base in {name.name for name in one.names}]
+            if homes and base not in self.links:
+                yield from self.package.definitions(homes[0], base)[0].body
 
     def sections(self, parts, given):
         stated = split_names(parts.get("Parameters", []))
@@ -235,12 +266,13 @@ class Reference:
         lines = [table(("parameter", "type", "default", "meaning"),
                        [(name, *types.get(name, ("", "")), meaning) for name, meaning in stated.items()], self.links)]
         if "Returns" in parts:
-            text = re.sub(r"\b(?:an?|the) ([A-Z]\w+)\b", lambda m: m[0].replace(m[1], f"`{m[1]}`") if m[1] in self.links
-                          else m[0], parts["Returns"], flags=re.I)
-            lines.append(f"**Returns** {prose(text, self.links)}\n")
+            for kind, meaning in parts["Returns"]:
+                shown = " or ".join(f"`{one}`" for one in kind.split(" or "))
+                meaning = f": {prose(meaning, self.links)}" if meaning else ""
+                lines.append(f"**Returns** {prose(shown, self.links)}{meaning}\n")
         lines.append(table(("raises", "when"), parts.get("Raises", []), self.links))
-        if "Example" in parts:
-            lines.append(f"```pycon\n{parts['Example']}\n```\n")
+        if "Examples" in parts:
+            lines.append(examples(parts["Examples"], self.links))
         return "\n".join(lines)
 
     def fields(self, module, node):
@@ -273,7 +305,7 @@ class Reference:
         lines.append(table(("attribute", "type", "meaning"), fields, self.links))
         lines.append(self.sections(parts, parameters_of(start, True) if made else []))
         methods = {}
-        for one in node.body:
+        for one in [*node.body, *self.inherited(module, node)]:
             if isinstance(one, ast.FunctionDef) and not one.name.startswith("_") and not (
                     {"property", "setter"} & decorators(one)):
                 methods.setdefault(one.name, []).append(one)

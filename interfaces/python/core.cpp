@@ -56,7 +56,7 @@ void translate(std::exception_ptr thrown) {
 
 Design<double> read(const std::string& file) {
   forget_files();
-  return read_design(file);
+  return read_design(find_input(file, InputKind::vehicle).string());
 }
 
 Design<double> parse(const std::string& text, const std::string& name) { return parse_design(text, name); }
@@ -334,6 +334,8 @@ PYBIND11_MODULE(_core, m) {
   m.attr("version") = WINGBEAT_VERSION;
 
   py::class_<Design<double>>(m, "Design").def("value", &value_of).def("to_toml", &write_design);
+  m.def("set_shipped_data", [](const std::string& folder) { set_shipped_data(folder); });
+  m.def("shipped_names", [](const std::string& kind) { return shipped_names(choice<InputKind>("kind", kind)); });
   m.def("read", &read);
   m.def("parse", &parse);
   m.def("with_values", &with, "values"_a, "base"_a.none(true));

@@ -6,6 +6,7 @@
 
 #include "binding.hpp"
 #include "report/result_trees.hpp"
+#include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/optimise_file.hpp"
 #include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/report/pareto_report.hpp"
@@ -74,7 +75,7 @@ py::dict find_front(const OptimiseFile& file, int threads, const std::vector<std
 py::dict find_optimum(const std::string& name, const std::vector<std::string>& overrides, bool allow_extrapolation,
                       int threads, const std::vector<std::string>& folders, const py::object& progress) {
   forget_files();
-  OptimiseFile file = read_optimise_study(name, overrides);
+  OptimiseFile file = read_optimise_study(find_input(name, InputKind::study), overrides);
   file.study.allow_extrapolation |= allow_extrapolation;
   return file.objectives.empty() ? find_best(std::move(file), threads) : find_front(file, threads, folders, progress);
 }
@@ -100,7 +101,7 @@ OwnTerm term_of(const py::handle& given) {
 py::dict find_own(const std::string& name, const std::vector<std::string>& overrides, bool allow_extrapolation,
                   const py::function& evaluate, std::size_t constraints) {
   forget_files();
-  OptimiseFile file = read_optimise_study(name, overrides);
+  OptimiseFile file = read_optimise_study(find_input(name, InputKind::study), overrides);
   file.study.allow_extrapolation |= allow_extrapolation;
   if (!file.objectives.empty() || !file.choices.empty() || !file.motors.empty()) {
     throw InputError("", 0, 0, "objective",

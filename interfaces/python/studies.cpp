@@ -12,6 +12,7 @@
 #include "wingbeat/files/bench_file.hpp"
 #include "wingbeat/files/datasheet_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/netcdf.hpp"
 #include "wingbeat/files/tolerance_file.hpp"
 #include "wingbeat/report/control_report.hpp"
@@ -140,7 +141,7 @@ py::dict identify(const std::string& file, std::optional<double> frequency, bool
                   bool assume_typical_damping, const std::string& shaft) {
   forget_files();
   const Shaft stated = choice<Shaft>("shaft", shaft);
-  MotorDatasheet sheet = read_datasheet(file);
+  MotorDatasheet sheet = read_datasheet(find_input(file, InputKind::datasheet));
   sheet.assume_steel_cylinder |= assume_steel_cylinder;
   sheet.assume_typical_damping |= assume_typical_damping;
   const MotorIdentification found = listening([&] { return identify_motor(sheet, frequency); });
@@ -155,7 +156,7 @@ py::dict identify(const std::string& file, std::optional<double> frequency, bool
 py::dict fit(const std::string& file, const std::vector<std::string>& overrides, bool profiles,
              bool compare_friction_laws, int threads) {
   forget_files();
-  BenchFit bench = read_bench(file, overrides);
+  BenchFit bench = read_bench(find_input(file, InputKind::bench), overrides);
   bench.profiles = profiles;
   FitResult found;
   std::vector<FrictionCandidate> candidates;
@@ -174,7 +175,7 @@ py::dict fit(const std::string& file, const std::vector<std::string>& overrides,
 py::dict tolerance(const std::string& file, const std::vector<std::string>& overrides, bool allow_extrapolation,
                    int threads, const py::object& progress) {
   forget_files();
-  ToleranceStudy study = read_tolerance_study(file, overrides);
+  ToleranceStudy study = read_tolerance_study(find_input(file, InputKind::study), overrides);
   study.allow_extrapolation |= allow_extrapolation;
   const ToleranceResult found = watched(progress, [&](Watch& watch) {
     const SweepColumns columns =

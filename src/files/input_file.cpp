@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <iostream>
 #include <system_error>
+#include <utility>
 
 #include "files/read_stream.hpp"
 #include "wingbeat/files/design_file.hpp"
@@ -54,7 +55,19 @@ const std::string& standard_input() {
   return text;
 }
 
+namespace {
+
+fs::path& stated_data() {
+  static fs::path folder;
+  return folder;
+}
+
+}  // namespace
+
+void set_shipped_data(fs::path folder) { stated_data() = std::move(folder); }
+
 fs::path shipped_data() {
+  if (!stated_data().empty()) return stated_data();
   std::error_code error;
   const fs::path program = fs::read_symlink("/proc/self/exe", error);
   if (error) return {};

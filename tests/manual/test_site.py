@@ -178,7 +178,7 @@ class PythonReference(Folder):
         self.assertIn("wingbeat.sweep(\n    vehicle: Vehicle,\n    axes: Mapping[str, Any],\n    *,\n", sweep)
         self.assertIn("\n) -> SweepData\n", sweep)
         self.assertIn(r"| `frequency` | `float \| str \| None` | `None` | \[Hz\], held by all designs", sweep)
-        self.assertRegex(sweep, r"\n\| `InputError` \| for axes")
+        self.assertRegex(sweep, r"\n\| `InputError` \| For axes")
         self.assertIn("```pycon\n>>> vehicle = wb.read(", sweep)
 
     def test_links_within_lead_somewhere(self):

@@ -42,8 +42,8 @@ class Types(Refusals):
             for wrong in ("friction2022", {"motor": {}}, 3):
                 text = f"vehicle: expected a wingbeat.Vehicle, got {type(wrong).__name__}$"
                 self.refused(lambda: act(wrong), text, TypeError)
-        self.refused(lambda: wb.solve(3), "vehicle: expected a wingbeat.Vehicle, or a dict or DataFrame of columns, got int$", TypeError)
-        self.refused(lambda: wb.solve(None), "vehicle: expected .*, got NoneType$", TypeError)
+        self.refused(lambda: wb.solve(3), "design: expected a wingbeat.Vehicle, or a dict or DataFrame of columns, got int$", TypeError)
+        self.refused(lambda: wb.solve(None), "design: expected .*, got NoneType$", TypeError)
         self.refused(lambda: wb.motor_curves(3, voltage=1), r"motor: expected a wingbeat.Vehicle, or a dict .*, got int$", TypeError)
         self.refused(lambda: wb.kinematics([1]), r"transmission: expected .*, got list$", TypeError)
         self.refused(lambda: wb.coefficient_curves(3), "aerodynamics: expected .*, got int$", TypeError)
@@ -80,9 +80,38 @@ class Types(Refusals):
         for same in (22, "22 Hz", "0.022 kHz", np.float64(22), np.float32(22), np.int8(22), np.uint64(22), np.longdouble(22),
                      np.array(22.0), Fraction(22), Decimal(22), wb.Quantity(22.0, "Hz")):
             self.assertEqual(vehicle.solve(frequency=same).lift_mean, wanted, repr(same))
-            if not isinstance(same, str):
+            if not isinstance(same, (str, wb.Quantity)):
                 self.assertEqual(vehicle.replace({"vehicle.mass": same}).vehicle.mass, 22.0)
         self.assertEqual(vehicle.solve(tolerance="1e-6").lift_mean, vehicle.solve().lift_mean)
+
+    def test_quantities_of_another_unit(self):
+        """What knows its unit is converted, or refused, wherever a quantity is expected."""
+        import xarray
+
+        vehicle = reference()
+        wanted = vehicle.solve(voltage="2.5 V").lift_mean
+        self.assertEqual(vehicle.solve(voltage=wb.Quantity(2500.0, "mV")).lift_mean, wanted)
+        self.assertEqual(vehicle.replace({"supply.voltage": wb.Quantity(2500.0, "mV")}).supply.voltage, 2.5)
+        self.assertEqual(vehicle.solve(voltage=wb.Quantity(2.5)).lift_mean, wanted)
+        length = vehicle.transmission.rod_length
+        self.assertEqual(vehicle.replace({"friction.radius": length}).friction.radius, float(length))
+        millivolts = xarray.DataArray([2500.0, 3000.0], dims="run", attrs={"units": "mV"})
+        for given in (millivolts, [wb.Quantity(2500.0, "mV"), "3 V"], ["2.5 V", 3], xarray.DataArray([2.5, 3.0])):
+            np.testing.assert_array_equal(vehicle.sweep({"supply.voltage": given}).supply_voltage, [2.5, 3.0])
+            self.assertAlmostEqual(vehicle.solve_columns({"supply.voltage": given}).lift_mean[0] / wanted, 1.0, 6)
+        angles = xarray.DataArray([0.0, 90.0], dims="angle", attrs={"units": "degree"})
+        np.testing.assert_allclose(vehicle.kinematics(crank_angle=angles).crank_angle, [0.0, np.pi / 2])
+        for act, text in (
+            (lambda: vehicle.solve(voltage=length), "supply.voltage: expected a voltage such as .* got .*0.02 m"),
+            (lambda: vehicle.solve(frequency=length), "frequency: expected a frequency such as .* got .*0.02 m"),
+            (lambda: vehicle.replace({"motor.inertia": length}), "motor.inertia: expected a moment of inertia"),
+            (lambda: vehicle.sweep({"friction.radius": millivolts}), "friction.radius: expected a length such as"),
+            (lambda: vehicle.solve_columns({"friction.radius": [length, vehicle.supply.voltage]}), "friction.radius: expected a l"),
+            (lambda: vehicle.kinematics(crank_angle=millivolts), "crank_angle: expected an angle such as"),
+            (lambda: vehicle.simulation().record(millivolts), "times: expected a time such as"),
+        ):
+            with self.subTest(text):
+                self.refused(act, text)
 
     def test_choices_flags_and_counts(self):
         vehicle = reference()

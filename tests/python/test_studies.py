@@ -119,6 +119,88 @@ class Studies(unittest.TestCase):
         self.assertNotEqual(fewer["parameters"][0]["value"], expected["parameters"][0]["value"])
         self.assertEqual(len(fewer["points"]), len(expected["points"]) - 1)
 
+    def test_a_vehicle_and_data(self):
+        """wb.fit(vehicle, data) is the fit of a bench with one log."""
+        import pandas
+
+        vehicle, folder = wb.read("friction2022-springs"), DATA / "bench"
+        frames = {name: pandas.read_csv(folder / f"{name}.csv", comment="#") for name in ("air", "vacuum")}
+        bounds = {"friction.radius": ("0 mm", 0.008, "1 mm"), "motor.viscous_damping": {"lower": 0, "upper": 2e-5}}
+        tables = [{"key": "friction.radius", "lower": "0 mm", "upper": 0.008, "start": "1 mm"},
+                  {"key": "motor.viscous_damping", "lower": 0, "upper": 2e-5}]
+        deviation = {"default": {"relative": 0.01}, "lift_mean": {"relative": 0.02}}
+        logs = [{"data": frame, "condition": name, "springs": False} for name, frame in frames.items()]
+        whole = {"parameter": tables, "deviation": deviation, "log": logs}
+        options = {"profiles": False, "parameters": bounds, "deviation": {"default": 0.01, "lift_mean": 0.02}}
+        both = wb.fit(whole, vehicle=vehicle, profiles=False)
+        self.assertTrue(both["converged"])
+        for act in (
+            lambda: wb.fit(vehicle, logs, **options), lambda: vehicle.fit(logs, **options),
+            lambda: wb.fit(vehicle, [frames["air"], {"data": frames["vacuum"], "condition": "vacuum"}], springs=False, **options),
+            lambda: wb.fit(vehicle, [folder / "air.csv", {"file": folder / "vacuum.csv", "condition": "vacuum"}],
+                           springs=False, **options),
+            lambda: wb.fit(vehicle, whole, profiles=False), lambda: wb.fit(data=whole, vehicle=vehicle, profiles=False),
+            lambda: wb.fit(bench=whole, vehicle=vehicle, profiles=False),
+            lambda: wb.fit(vehicle, {"log": logs, "deviation": deviation}, parameters=tables, profiles=False),
+        ):
+            found = act()
+            self.assertEqual([one["value"] for one in found["parameters"]], [one["value"] for one in both["parameters"]])
+            self.assertEqual(found["chi_square"], both["chi_square"])
+        one = {"data": frames["air"], "condition": "air", "springs": False}
+        alone = wb.fit(vehicle, frames["air"], springs=False, **options)
+        table = wb.fit({**whole, "log": [one]}, vehicle=vehicle, profiles=False)
+        self.assertEqual(alone["parameters"], table["parameters"])
+        robust = wb.fit(vehicle, frames["air"], springs=False, loss="huber", **options)
+        expected = wb.fit({**whole, "log": [one], "fit": {"loss": "huber"}}, vehicle=vehicle, profiles=False)
+        self.assertEqual(robust["parameters"], expected["parameters"])
+        self.assertNotEqual(robust["parameters"], alone["parameters"])
+        estimated = wb.fit(vehicle, frames["air"], springs=False, parameters=bounds, profiles=False)
+        stated = wb.fit({**whole, "log": [one], "deviation": {"default": "estimated"}}, vehicle=vehicle, profiles=False)
+        self.assertEqual(estimated["parameters"], stated["parameters"])
+
+    def test_data_of_a_vehicle_that_cannot_be_used(self):
+        vehicle = wb.read("friction2022")
+        air = {"voltage_V": [2, 3, 4], "frequency_Hz": [16.0, 22.0, 27.5], "current_mean_mA": [110, 180, 253]}
+        bounds = {"friction.radius": (0, "8 mm")}
+        bench = {"log": [{"data": air, "condition": "air"}], "parameter": [{"key": "friction.radius"}]}
+        for act, text, error in (
+            (lambda: wb.fit(vehicle), "^bench: a vehicle needs a bench beside it$", TypeError),
+            (lambda: wb.fit(air, vehicle), "^vehicle: expected a wingbeat.Vehicle, got dict$", TypeError),
+            (lambda: wb.fit(vehicle, air), "^parameters: expected what to fit, such as .*, got none$", TypeError),
+            (lambda: wb.fit(vehicle, air, parameters=["friction.radius"]), "^parameters: expected bounds by key", TypeError),
+            (lambda: wb.fit(vehicle, air, parameters={"friction.radius": 3}), r"^parameters\['friction.radius'\]: ", TypeError),
+            (lambda: wb.fit(vehicle, air, parameters={"friction.radius": ("0 s", 1)}), 'expected a length such as "5 mm"', wb.InputError),
+            (lambda: wb.fit(vehicle, air, parameters=bounds, deviation=[1]), "^deviation: expected a number relative", TypeError),
+            (lambda: wb.fit(vehicle, air, parameters=bounds, deviation={"frequency": 1j}), r"^deviation\['frequency'\]: ", TypeError),
+            (lambda: wb.fit(vehicle, air, parameters=bounds), "estimated.*intervals hold from 6 on", wb.InputError),
+            (lambda: wb.fit(vehicle, air, parameters=bounds, condition="water"), "condition: expected one of air", wb.InputError),
+            (lambda: wb.fit(vehicle, air, parameters=bounds, springs=1), "^springs: expected True or False", TypeError),
+            (lambda: wb.fit(vehicle, 3, parameters=bounds), "^log.0..data: expected a DataFrame", TypeError),
+            (lambda: wb.fit(vehicle, bench, parameters=bounds), "^parameters: is given in the bench and beside it$", wb.InputError),
+            (lambda: wb.fit(vehicle, bench, condition="air"), "^condition: belongs to each log", wb.InputError),
+            (lambda: wb.fit("flapper", deviation=0.1), "^deviation: is for data of a vehicle", TypeError),
+            (lambda: wb.tolerance(vehicle), "^study: a vehicle needs a study beside it$", TypeError),
+            (lambda: wb.optimise(vehicle, "optimise-hover"), "^a study file names its vehicle", TypeError),
+        ):
+            with self.subTest(text), self.assertRaisesRegex(error, text):
+                act()
+
+    def test_vehicle_and_study_in_either_order(self):
+        spread = {"key": "friction.radius", "distribution": "normal", "relative_deviation": 0.05}
+        study, vehicle = {"samples": {"count": 64}, "parameter": [spread]}, reference()
+        wanted = dict(wb.tolerance(study, vehicle=vehicle))
+        named = {**study, "study": {"vehicle": str(DATA / "designs" / "friction2022.toml")}}
+        for act in (lambda: wb.tolerance(vehicle, study), lambda: vehicle.tolerance(study),
+                    lambda: wb.tolerance(vehicle=vehicle, study=study), lambda: wb.tolerance(study=study, vehicle=vehicle)):
+            self.assertEqual(dict(act()), wanted)
+        for act in (lambda: wb.tolerance(named), lambda: wb.tolerance(study=named),
+                    lambda: wb.tolerance(named, vehicle=None),
+                    lambda: wb.tolerance({**study, "study": {"vehicle": "friction2022"}})):
+            self.assertEqual(act()["outputs"], wanted["outputs"])
+        best = {"objective": {"minimise": "power_electrical_w", "starts": 1, "screen": 32},
+                "parameter": [{"key": "supply.voltage", "lower": 2, "upper": 3}]}
+        self.assertEqual(dict(wb.optimise(vehicle, best)), dict(wb.optimise(best, vehicle=vehicle)))
+
     def test_a_frame_that_cannot_be_used_is_named(self):
         vehicle = wb.read(DATA / "designs" / "friction2022-springs.toml")
 

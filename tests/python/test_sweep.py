@@ -195,6 +195,67 @@ class Sweeps(unittest.TestCase):
         best = float(data.wingbeat.lift_mean.sel(supply_voltage=3, transmission_crank_radius=0.005))
         self.assertAlmostEqual(best / reference().solve().lift_mean, 1.0, 5)
 
+    def test_the_status_is_a_text_everywhere(self):
+        vehicle = reference()
+        data = vehicle.sweep({"supply.voltage": [0.0, 3.0, 4.0], "friction.radius": [2e-3, 3e-3]})
+        column = vehicle.solve_columns({"supply.voltage": [0.0, 3.0, 4.0]})
+        for one in (data.status, data["status"], data.wingbeat.status, data.lift_mean.status, column.to_xarray().status):
+            self.assertEqual(one.dtype.kind, "U")
+        self.assertEqual(column.status.dtype.kind, "U")
+        self.assertEqual(list(column.status), [str(vehicle.solve(voltage=volts).status) for volts in (0, 3, 4)])
+        self.assertEqual(data.status[:, 0].values.tolist(), list(column.status))
+        np.testing.assert_array_equal(data.status_code[:, 0], column.status_code)
+
+    def test_wrappers_stay_what_they_are(self):
+        """Behind everything that a method or an operator of a data set returns; the status as it was."""
+        data = reference().sweep({"supply.voltage": [0.0, 3.0, 4.0], "friction.radius": [2e-3, 3e-3]})
+        volts = data.supply_voltage
+        for name, act in {
+            "where": lambda d: d.where(d.lift_mean > 0.01), "drop": lambda d: d.where(d.status == "flapping", drop=True),
+            "sel": lambda d: d.sel(supply_voltage=3), "isel": lambda d: d.isel(supply_voltage=[0, 2]),
+            "times": lambda d: 2 * d, "minus": lambda d: d - d.isel(supply_voltage=1, drop=True).reset_coords(drop=True),
+            "minus itself": lambda d: d - d, "negative": lambda d: -d, "numpy": np.sqrt, "compared": lambda d: d > 0,
+            "mean": lambda d: d.where(volts > 0).mean("friction_radius"), "fillna": lambda d: d.fillna(0.0),
+            "assign": lambda d: d.assign(extra=2 * d.lift_mean), "copy": lambda d: d.copy(deep=True),
+            "several": lambda d: d[["lift_mean", "power_electrical_w"]], "transpose": lambda d: d.transpose(),
+            "stack": lambda d: d.stack(design=["supply_voltage", "friction_radius"]), "load": lambda d: d.load(),
+            "pickled": lambda d: pickle.loads(pickle.dumps(d)), "map": lambda d: d.map(np.abs),
+            "astype": lambda d: d.astype(float), "clip": lambda d: d.clip(min=0), "pipe": lambda d: d.pipe(lambda e: e + 1),
+        }.items():
+            with self.subTest(name):
+                made = act(data)
+                self.assertIs(type(made), wb.SweepData)
+                self.assertEqual(made.lift_mean.name, "lift_mean_n")
+                np.testing.assert_array_equal(made["lift_mean"], made["lift_mean_n"])
+                if "supply_voltage" in made.dims and "friction_radius" in made.dims:
+                    picked = data.sel(supply_voltage=made.supply_voltage).transpose(*made.status.dims)
+                    self.assertEqual(made.status.dtype.kind, "U")
+                    np.testing.assert_array_equal(made.status, picked.status)
+        lifting = data.where(data.lift_mean > 0.01)
+        self.assertTrue(np.isnan(lifting.lift_mean[0]).all())
+        self.assertEqual(float((data * 1e3).lift_mean.max()), 1e3 * float(data.lift_mean.max()))
+        plain = xr.merge([xr.Dataset(data), xr.Dataset({"mine": 1.0})])
+        self.assertEqual(plain.wingbeat.lift_mean.name, "lift_mean_n")
+        self.assertEqual(plain.wingbeat.status.dtype.kind, "U")
+
+    def test_designs_that_are_no_longer_there_have_no_status(self):
+        data = reference().sweep({"supply.voltage": [3.0, 4.0]}).reindex(supply_voltage=[3.0, 9.0])
+        self.assertEqual(data.wingbeat.status.values.tolist(), ["flapping", ""])
+        self.assertEqual(data.status_code.values.tolist(), [0, -1])
+
+    def test_what_it_writes_is_what_the_program_writes(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file, first = pathlib.Path(folder) / "kept.nc", pathlib.Path(folder) / "first.nc"
+            data = reference().sweep({"supply.voltage": [0.0, 2.0, 3.0, 4.0]}, output=first)
+            data.to_netcdf(file)
+            xr.testing.assert_identical(wb.open_dataset(file), data)
+            with xr.open_dataset(file) as plain, xr.open_dataset(first) as program:
+                xr.testing.assert_identical(plain, program)
+                self.assertEqual(plain["status"].dtype, program["status"].dtype)
+                self.assertEqual(plain["status"].values.tolist(), [1, 0, 0, 0])
+                self.assertEqual(plain["status"].attrs["flag_meanings"].split()[:2], ["flapping", "stalled"])
+                np.testing.assert_array_equal(plain.wingbeat.status, data.status)
+
     def test_choices_and_held_frequencies(self):
         axes = {"condition": ["air", "vacuum"], "frequency": ["20 Hz", "22 Hz"]}
         data = reference().sweep(axes)

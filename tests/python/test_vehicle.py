@@ -2,6 +2,7 @@
 
 import copy
 import io
+import os
 import pathlib
 import pickle
 import tempfile
@@ -152,6 +153,29 @@ class Errors(unittest.TestCase):
             wb.read(file)
         with self.assertRaisesRegex(TypeError, "^file: expected a path or a file open for reading text, got int$"):
             wb.read(1)
+
+    def test_shipped_vehicles_have_names(self):
+        designs = {file.stem for file in (DATA / "designs").glob("*.toml")}
+        self.assertEqual(set(wb.shipped()), designs)
+        for name in sorted(designs):
+            self.assertEqual(wb.read(name), wb.read(DATA / "designs" / f"{name}.toml"))
+        self.assertEqual(wb.read("friction2022.toml"), reference())
+        self.assertEqual(set(wb.shipped("bench")), {file.stem for file in (DATA / "bench").glob("*.toml")})
+        with tempfile.TemporaryDirectory() as folder:
+            here = os.getcwd()
+            self.addCleanup(os.chdir, here)
+            os.chdir(folder)
+            own = reference().replace({"vehicle.name": "mine"})
+            pathlib.Path("friction2022.toml").write_text(own.to_toml())  # a file of that name is meant
+            self.assertEqual(wb.read("friction2022"), own)
+            self.assertEqual(wb.read("hawkmoth"), wb.read(DATA / "designs" / "hawkmoth.toml"))
+            os.chdir(here)
+        with self.assertRaisesRegex(wb.InputError, "^friction2023: no such file, .*; did you mean friction2022"):
+            wb.read("friction2023")
+        with self.assertRaisesRegex(wb.InputError, "^folder/friction2022: no such file$"):
+            wb.read("folder/friction2022")
+        with self.assertRaisesRegex(wb.InputError, '^kind: must be vehicle, study, bench, .*, got "figure"'):
+            wb.shipped("figure")
 
     def test_what_is_no_value_at_all(self):
         with self.assertRaises(TypeError):

@@ -25,6 +25,14 @@ def main(file: str) -> float:
     flight.voltage = 3.0
     flight.restore(flight.save())
     print(kinds, speed, float(vehicle.motor_curves().stall_torque))
+    data = vehicle.sweep({"supply.voltage": ["2 V", 3.0]}, progress=False)
+    flapping: bool = bool((data.where(data.lift_mean > 0).status == "flapping").all())
+    air = {"voltage_V": [2, 3, 4], "frequency_Hz": [16.0, 22.0, 27.5], "current_mean_mA": [110, 180, 253]}
+    fitted = wb.fit(vehicle, air, parameters={"friction.radius": (0, "8 mm")}, deviation=0.01)
+    same = vehicle.fit(air, parameters={"friction.radius": (0, "8 mm")}, deviation={"default": 0.01})
+    if fitted.vehicle is None or same.vehicle is None:
+        raise SystemExit(str(fitted))
+    print(flapping, fitted.vehicle.friction.radius == same.vehicle.friction.radius)
     return result.frequency + best
 
 

@@ -4,12 +4,21 @@
 
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "wingbeat/core/names.hpp"
 
 namespace wingbeat {
 
 /// What a file is expected to hold: where a file of that name is looked for among the program's own.
 enum class InputKind { vehicle, study, bench, datasheet, published };
+template <>
+inline constexpr std::pair<const char*, InputKind> names_of<InputKind>[] = {{"vehicle", InputKind::vehicle},
+                                                                            {"study", InputKind::study},
+                                                                            {"bench", InputKind::bench},
+                                                                            {"datasheet", InputKind::datasheet},
+                                                                            {"published", InputKind::published}};
 
 /// The file that `argument` names: "-", a file that exists, the same with ".toml", or, for a name without a folder, the
 /// file that comes with the program ("friction2022": designs/friction2022.toml). Throws InputError, with the names that
@@ -24,6 +33,10 @@ bool is_there(const std::filesystem::path& file);
 
 /// The folder of the data that come with the program, found from where the program is; empty where there is none.
 std::filesystem::path shipped_data();
+
+/// Makes that another folder, for users of the library that have the data elsewhere. Not while other threads read
+/// files.
+void set_shipped_data(std::filesystem::path folder);
 
 /// The names of the files of that kind that come with the program, sorted.
 std::vector<std::string> shipped_names(InputKind kind);

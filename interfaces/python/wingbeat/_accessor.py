@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import functools
+import inspect
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -9,6 +12,32 @@ import xarray
 
 from ._tables import metrics, statuses
 from ._vehicle import Vehicle
+
+#: Where a design has no status, because it was masked or lies outside the data.
+_NO_CODE = -1
+
+
+def _names_of(codes: Any) -> Any:
+    """Statuses by name, "" where there is none, of codes as files have them; names stay as they are."""
+    given = np.asarray(codes)
+    if given.dtype.kind in "OU":
+        names = [name if isinstance(name, str) else "" for name in given.ravel()]
+        return np.array(names, dtype=str).reshape(given.shape)
+    found = np.nan_to_num(given.astype(float), nan=_NO_CODE).astype(int)
+    return np.array([*statuses, ""])[np.where((found >= 0) & (found < len(statuses)), found, len(statuses))]
+
+
+def _codes_of(names: Any) -> Any:
+    """The code of each status, as files have it."""
+    known = {name: code for code, name in enumerate(statuses)}
+    found = [known.get(name, _NO_CODE) for name in _names_of(names).ravel()]
+    return np.array(found, dtype=np.int8).reshape(np.shape(names))
+
+
+def status_of(dataset: xarray.Dataset) -> xarray.DataArray:
+    """"flapping", "stalled", ... of each design, of a data set of this package or of a file that xarray has opened."""
+    status = dataset["status"]
+    return status.copy(data=_names_of(status.values))
 
 
 @xarray.register_dataset_accessor("wingbeat")  # type: ignore[no-untyped-call]
@@ -20,9 +49,8 @@ class DataSet:
 
     @property
     def status(self) -> xarray.DataArray:
-        """"flapping", "stalled", ... of each design."""
-        codes = self._dataset["status"]
-        return codes.copy(data=np.array(statuses)[codes.values])
+        """"flapping", "stalled", ... of each design, "" where it was masked."""
+        return status_of(self._dataset)
 
     @property
     def vehicle(self) -> Vehicle:
@@ -40,26 +68,123 @@ class DataSet:
 
 
 class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
-    """The data set of a sweep, with metrics by name, and the status by name, as attributes.
+    """The data set of a sweep, an `xarray.Dataset` with metrics by the names of this package.
 
-    `data["status"]` is the variable of the file, a number; `data.status == "flapping"` compares names.
+    `data.lift_mean`, or `data["lift_mean"]`, is the variable `lift_mean_n` of the file. The status of each design,
+    "flapping", "stalled", ..., is a coordinate, so that it stays with the data and with each metric: `data.status`,
+    `data["status"]` and `data.lift_mean.status` are the same texts, also of a selection, behind `where` and behind
+    arithmetic. `to_netcdf` writes it as the number that files of the program have, `status_code`.
+
+    What the methods and operators of a SweepData return is a SweepData again. What xarray makes elsewhere (`groupby`,
+    `rolling`, `xarray.merge`) may be a plain data set; there `dataset.wingbeat` has the same names.
+
+    Examples
+    --------
+    >>> data = wb.read("friction2022").sweep({"supply.voltage": [0, 3, 4]})
+    >>> data.status.values.tolist()
+    ['stalled', 'flapping', 'flapping']
+    >>> lifting = data.where(data.lift_mean > 0.01)
+    >>> lifting.lift_mean.round(4).values, lifting.status.values.tolist()
+    (array([   nan,    nan, 0.0159]), ['stalled', 'flapping', 'flapping'])
+    >>> (1e3 * data).sel(supply_voltage=4).lift_mean.status.item()
+    'flapping'
     """
 
     __slots__ = ()
 
     @property
-    def status(self) -> xarray.DataArray:
-        """"flapping", "stalled", ... of each design."""
-        return DataSet(self).status
+    def status_code(self) -> xarray.DataArray:
+        """The status of each design as files have it, 0 for flapping: the index in the list of statuses."""
+        codes: xarray.DataArray = self["status"].copy(data=_codes_of(self["status"].values))
+        return codes
 
     def __getattr__(self, name: str) -> Any:
         if name in metrics and metrics[name].key in self.variables:
             return self[metrics[name].key]
         return super().__getattr__(name)
 
+    def __getitem__(self, key: Any) -> Any:
+        if isinstance(key, list):
+            key = [self._variable(name) for name in key]
+        return _again(super().__getitem__(self._variable(key)))
+
+    def _variable(self, name: Any) -> Any:
+        """The name of a variable, also by that of a metric."""
+        if isinstance(name, str) and name in metrics and name not in self.variables:
+            return metrics[name].key if metrics[name].key in self.variables else name
+        return name
+
+    def __dir__(self) -> list[str]:
+        own = (name for name, metric in metrics.items() if metric.key in self.variables)
+        return sorted({*super().__dir__(), *own})
+
     @classmethod
-    def of(cls, dataset: xarray.Dataset) -> SweepData:
-        """A copy with its variables, coordinates and attributes."""
+    def _of(cls, dataset: xarray.Dataset) -> SweepData:
+        """The data set of a file of the program: its variables, coordinates and attributes, the status by name."""
         data = cls(dataset.data_vars, dataset.coords, dataset.attrs)
         data.encoding = dataset.encoding
+        if "status" in data.variables and data["status"].dtype.kind not in "OU":
+            kept = {name: value for name, value in data["status"].attrs.items() if not name.startswith("flag_")}
+            data = data.assign_coords(status=(data["status"].dims, _names_of(data["status"].values), kept))
         return data
+
+    def to_netcdf(self, *arguments: Any, **options: Any) -> Any:
+        """As `xarray.Dataset.to_netcdf`; the status is written as a number, as the program does and reads it.
+
+        Parameters
+        ----------
+        *arguments, **options
+            As of `xarray.Dataset.to_netcdf`, the first of them the path.
+
+        Returns
+        -------
+        object
+            What `xarray.Dataset.to_netcdf` returns.
+
+        Examples
+        --------
+        >>> import os, tempfile
+        >>> data = wb.read("friction2022").sweep({"supply.voltage": [3, 4]})
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     data.to_netcdf(os.path.join(folder, "sweep.nc"))
+        ...     wb.open_dataset(os.path.join(folder, "sweep.nc")).identical(data)
+        True
+        """
+        plain = xarray.Dataset(self.data_vars, self.coords, self.attrs)
+        if "status" in plain.variables:
+            kept = plain["status"].attrs | {
+                "flag_values": np.arange(len(statuses), dtype=np.int8), "flag_meanings": " ".join(statuses)
+            }
+            plain = plain.reset_coords("status").assign(
+                status=(plain["status"].dims, _codes_of(plain["status"].values), kept)
+            )
+        return plain.to_netcdf(*arguments, **options)
+
+
+def _again(found: Any) -> Any:
+    """A SweepData for a plain data set."""
+    if type(found) is not xarray.Dataset:
+        return found
+    data = SweepData(found.data_vars, found.coords, found.attrs)
+    data.encoding = found.encoding
+    return data
+
+
+def _keeping(method: Callable[..., Any]) -> Callable[..., Any]:
+    """A method of data sets that returns a SweepData where it has made a plain data set."""
+
+    @functools.wraps(method)
+    def call(self: SweepData, *arguments: Any, **options: Any) -> Any:
+        return _again(method(self, *arguments, **options))
+
+    return call
+
+
+_OPERATORS = {f"__{prefix}{name}__" for prefix in ("", "r", "i") for name in (
+    "add", "sub", "mul", "truediv", "floordiv", "mod", "pow", "and", "or", "xor")}
+_OPERATORS |= {f"__{name}__" for name in (
+    "lt", "le", "gt", "ge", "eq", "ne", "neg", "pos", "abs", "invert", "array_ufunc")}
+
+for _name, _method in inspect.getmembers(xarray.Dataset, inspect.isfunction):
+    if _name not in vars(SweepData) and (not _name.startswith("_") or _name in _OPERATORS):
+        setattr(SweepData, _name, _keeping(_method))

@@ -14,6 +14,7 @@ import numpy as np
 
 from . import _core
 from ._errors import InputError
+from ._quantity import Quantity
 
 if TYPE_CHECKING:
     import numpy.typing as npt
@@ -129,7 +130,9 @@ def real(value: Any) -> float | None:
 
 
 def number(name: str, value: Any, unit: str) -> float:
-    """The SI number of a quantity: a number, or a text with a unit."""
+    """The SI number of a quantity: a number, or a text with a unit. A Quantity of another unit is read as its text."""
+    if isinstance(value, Quantity) and value.unit not in ("1", unit):
+        value = f"{float(value)!r} {value.unit}"
     if isinstance(value, str):
         found = _core.quantity(name, text(name, value), unit)
     else:
@@ -173,7 +176,11 @@ def array(name: str, values: Any, unit: str = "") -> npt.NDArray[np.float64]:
     if is_masked(values):
         first = int(np.flatnonzero(np.broadcast_to(values.mask, np.shape(values)))[0])
         raise refused(name, f"value {first} is masked; fill masked values, or leave them out")
-    texts = isinstance(values, (list, tuple)) and any(isinstance(value, str) for value in values)
+    texts = isinstance(values, (list, tuple)) and any(isinstance(value, (str, Quantity)) for value in values)
+    other = _other_unit(values, unit)
+    if other:
+        at_1, at_0 = (_core.quantity(name, f"{value} {other}", unit) for value in (1, 0))
+        return at_0 + (at_1 - at_0) * array(name, np.asarray(values))
     try:
         found = np.array(values, dtype=object) if texts else np.asarray(values)
     except ValueError:
@@ -195,15 +202,23 @@ def array(name: str, values: Any, unit: str = "") -> npt.NDArray[np.float64]:
     return np.ascontiguousarray(found, dtype=np.float64).reshape(found.shape)
 
 
-def axis_values(name: str, values: Any, numeric: bool) -> list[Any]:
-    """The values along an axis: numbers, texts or names."""
+def _other_unit(values: Any, unit: str) -> str:
+    """The unit that an array of xarray or pandas states, where it is not that one; "" where it states none."""
+    attributes = getattr(values, "attrs", None)
+    stated = attributes.get("units", "") if unit and isinstance(attributes, Mapping) else ""
+    return stated if isinstance(stated, str) and stated not in ("", "1", unit) else ""
+
+
+def axis_values(name: str, values: Any, unit: str) -> list[Any]:
+    """The values along an axis: numbers and texts with that unit, names where it is ""."""
+    numeric = bool(unit)
     if isinstance(values, (str, bytes, Mapping)) or not isinstance(values, Iterable):
         raise wrong_type(name, "an array of values", values)
     given = values if hasattr(values, "ndim") else list(values)
     texts = isinstance(given, list) and any(isinstance(value, str) for value in given)
     if getattr(given, "ndim", 1) == 1 and (not numeric or texts or getattr(given, "dtype", None) == object):
-        return list(given)
-    found = array(name, given)
+        return [number(name, value, unit) if unit and isinstance(value, Quantity) else value for value in given]
+    found = array(name, given, unit)
     if found.ndim != 1:
         raise refused(name, f"expected values along one axis, got an array of {found.ndim} dimensions")
     along: list[float] = found.tolist()

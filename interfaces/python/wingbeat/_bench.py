@@ -4,14 +4,100 @@ from __future__ import annotations
 
 import csv
 import math
+import os
 import pathlib
 import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
-from ._arguments import is_masked, real, refused, text, wrong_type
+from ._arguments import flag, is_masked, mapping, path, real, refused, text, wrong_type
 from ._errors import InputError
+
+
+def bench_of(data: Any, *, parameters: Any, deviation: Any, condition: Any, springs: Any, loss: Any) -> Any:
+    """The tables of a bench file for data and what else `wingbeat.fit` is given; a path of a bench file stays one."""
+    if isinstance(data, (str, os.PathLike)) and os.fspath(data).endswith(".toml"):
+        return data
+    tables: dict[str, Any]
+    if isinstance(data, Mapping) and {"log", "parameter"} & set(data):
+        for name, value in (("condition", condition), ("springs", springs)):
+            if value is not None:
+                raise refused(name, "belongs to each log, where a bench is given as a dict of its tables")
+        tables = dict(data)
+    else:
+        tables = {"log": [_log(log, condition, springs) for log in _logs(data)]}
+    for name, given, table in (("parameter", "parameters", _parameters(parameters)),
+                               ("deviation", "deviation", _deviations(deviation))):
+        if table is not None and name in tables:
+            raise refused(given, "is given in the bench and beside it")
+        if table is not None:
+            tables[name] = table
+    if "parameter" not in tables:
+        raise TypeError("parameters: expected what to fit, such as {'friction.radius': ('0 mm', '8 mm')}, got none")
+    tables.setdefault("deviation", {"default": "estimated"})
+    if loss is not None:
+        tables["fit"] = {**tables.get("fit", {}), "loss": text("loss", loss)}
+    return tables
+
+
+def _logs(data: Any) -> list[Any]:
+    return list(data) if isinstance(data, (list, tuple)) else [data]
+
+
+def _log(log: Any, condition: Any, springs: Any) -> dict[str, Any]:
+    """A table `log` of a bench file for a table of measurements, the path of one, or such a table."""
+    if isinstance(log, (str, os.PathLike)):
+        made: dict[str, Any] = {"file": os.path.abspath(os.fsdecode(path("data", log)))}
+    elif isinstance(log, Mapping) and {"data", "file"} & set(log):
+        made = dict(log)
+        if isinstance(made.get("file"), (str, os.PathLike)):
+            made["file"] = os.path.abspath(os.fspath(made["file"]))
+    else:
+        made = {"data": log}
+    made.setdefault("condition", "air" if condition is None else text("condition", condition))
+    if springs is not None:
+        made.setdefault("springs", flag("springs", springs))
+    return made
+
+
+def _parameters(parameters: Any) -> list[Any] | None:
+    """The tables `parameter` of a bench file for bounds by key, or for a list of such tables."""
+    if parameters is None:
+        return None
+    if isinstance(parameters, (list, tuple)) and all(isinstance(one, Mapping) for one in parameters):
+        return list(parameters)
+    expected = "bounds by key, such as {'friction.radius': ('0 mm', '8 mm')}, or a list of tables"
+    made = []
+    for key, bounds in mapping("parameters", parameters, expected).items():
+        if isinstance(bounds, Mapping):
+            made.append({"key": key, **bounds})
+        elif isinstance(bounds, (list, tuple)) and len(bounds) in (2, 3):
+            made.append({"key": key, **dict(zip(("lower", "upper", "start"), bounds))})
+        else:
+            raise wrong_type(f"parameters[{key!r}]", "(lower, upper) or (lower, upper, start)", bounds)
+    return made
+
+
+def _deviations(deviation: Any) -> dict[str, Any] | None:
+    """The table `deviation` of a bench file: numbers are relative, texts absolute."""
+    if deviation is None:
+        return None
+    if not isinstance(deviation, Mapping):
+        return {"default": _deviation("deviation", deviation)}
+    found = {name: _deviation(f"deviation[{name!r}]", value) for name, value in mapping("deviation", deviation).items()}
+    return {"default": "estimated", **found}
+
+
+def _deviation(name: str, value: Any) -> Any:
+    if isinstance(value, Mapping) or value == "estimated":
+        return value
+    if isinstance(value, str):
+        return {"absolute": value}
+    relative = real(value)
+    if relative is None:
+        raise wrong_type(name, 'a number relative to each value, a text such as "0.1 Hz", or "estimated"', value)
+    return {"relative": relative}
 
 
 def logs_in(folder: pathlib.Path, logs: Any) -> list[dict[str, Any]]:

@@ -28,9 +28,9 @@ class Ensemble:
 
     Metrics are attributes: `result.lift_mean`, NaN where a design does not have one.
 
-    Example
-    -------
-    >>> vehicle = wb.read("data/designs/friction2022.toml")
+    Examples
+    --------
+    >>> vehicle = wb.read("friction2022")
     >>> found = wb.solve_columns({"supply.voltage": [0, 3, 4]}, vehicle=vehicle)
     >>> found
     <3 designs: 2 flapping, 1 stalled>
@@ -95,23 +95,29 @@ class Ensemble:
 
         Parameters
         ----------
-        metrics : the name of a metric, or a list of names
-        keys : a key, or a list of keys
-        threads : at most so many; 0: one for each core
-        progress : True shows a bar, a function is called with designs done and designs
+        metrics : str or list of str
+            The name of a metric, or a list of names.
+        keys : str or list of str
+            A key, or a list of keys.
+        threads : int, default 0
+            At most so many; 0: one for each core.
+        progress : bool or function, optional
+            True shows a bar, a function is called with designs done and designs.
 
         Returns
         -------
-        An array (designs, metrics, keys), without the dimension of a metric or key that is named alone [unit of the
-        metric per unit of the key].
+        numpy.ndarray
+            An array (designs, metrics, keys), without the dimension of a metric or key that is named alone [unit of
+            the metric per unit of the key].
 
         Raises
         ------
-        InputError : for an unknown key or metric, and for a key without a value in a design that flaps
+        InputError
+            For an unknown key or metric, and for a key without a value in a design that flaps.
 
-        Example
-        -------
-        >>> vehicle = wb.read("data/designs/friction2022.toml")
+        Examples
+        --------
+        >>> vehicle = wb.read("friction2022")
         >>> found = wb.solve_columns({"supply.voltage": [3, 4]}, vehicle=vehicle)
         >>> np.round(found.gradient("frequency", ["supply.voltage", "friction.radius"]), 2)
         array([[    5.67, -1374.37],
@@ -135,9 +141,21 @@ class Ensemble:
     def to_xarray(self) -> xarray.Dataset:
         """All of it over the dimension `design`, with units and long names.
 
+        Returns
+        -------
+        xarray.Dataset
+            The metrics by name, with the status of each design as a coordinate of texts.
+
         Raises
         ------
-        ImportError : where xarray is not installed
+        ImportError
+            Where xarray is not installed.
+
+        Examples
+        --------
+        >>> data = wb.solve({"supply.voltage": [0, 3]}, vehicle=wb.read("friction2022")).to_xarray()
+        >>> data.lift_mean.attrs["units"], data.status.values.tolist()
+        ('N', ['stalled', 'flapping'])
         """
         import xarray
 
@@ -149,9 +167,8 @@ class Ensemble:
             )
             for k, column in self._columns.items()
         }
-        made["status"] = ("design", self.status)
         made["error_estimate"] = ("design", self.error_estimate, {"units": "1"})
-        return xarray.Dataset(made)
+        return xarray.Dataset(made, {"status": ("design", self.status, {"long_name": "status"})})
 
     def __repr__(self) -> str:
         counts = np.bincount(self.status_code, minlength=len(statuses))
@@ -197,35 +214,52 @@ def solve_columns(
 
     Parameters
     ----------
-    columns : a dict or DataFrame with an array of SI numbers (or of texts with units) for each numeric key that varies;
+    columns : dict
+        A dict or DataFrame with an array of SI numbers (or of texts with units) for each numeric key that varies;
         other values hold for all designs. The key "frequency" is a flapping frequency to be held [Hz], "lift",
         "lift_to_weight" and "power" are held likewise.
-    vehicle : what the other keys are; not needed where the columns state a whole vehicle
-    frequency : [Hz], held by all designs: the voltage is found for each
-    lift : [N], the same for the mean lift: the lowest voltage that yields it
-    lift_to_weight : the same for the lift over the weight; 1: hover
-    power : [W], the same for the mean electrical power
-    allow_extrapolation : a search for a lift may leave the model's domain
-    condition : "air", "vacuum" or "wingless"
-    tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
-    metrics : those wanted, fewer cost less; default: all but hover and endurance
-    threads : at most so many; 0: one for each core
-    progress : True shows a bar (tqdm where it is installed), a function is called with designs done and designs
-
-    A design out of its physical range has the status "invalid". Other Python threads run meanwhile; Ctrl-C ends it.
+    vehicle : Vehicle, optional
+        What the other keys are; not needed where the columns state a whole vehicle.
+    frequency : float or str, optional
+        [Hz], held by all designs: the voltage is found for each.
+    lift : float or str, optional
+        [N], the same for the mean lift: the lowest voltage that yields it.
+    lift_to_weight : float, optional
+        The same for the lift over the weight; 1: hover.
+    power : float or str, optional
+        [W], the same for the mean electrical power.
+    allow_extrapolation : bool, default False
+        A search for a lift may leave the model's domain.
+    condition : str, default 'air'
+        "air", "vacuum" or "wingless".
+    tolerance : float, default 1e-06
+        Wanted relative accuracy of every metric, 1e-12 to 1e-2.
+    metrics : list of str, optional
+        Those wanted, fewer cost less; default: all but hover and endurance.
+    threads : int, default 0
+        At most so many; 0: one for each core.
+    progress : bool or function, optional
+        True shows a bar (tqdm where it is installed), a function is called with designs done and designs.
 
     Returns
     -------
-    An Ensemble, in the order of the rows.
+    Ensemble
+        An Ensemble, in the order of the rows.
 
     Raises
     ------
-    InputError : for a key that is unknown or has no place in the vehicle
-    ValueError : where no key has an array, or arrays differ in length
+    InputError
+        For a key that is unknown or has no place in the vehicle.
+    ValueError
+        Where no key has an array, or arrays differ in length.
 
-    Example
-    -------
-    >>> vehicle = wb.read("data/designs/friction2022.toml")
+    Notes
+    -----
+    A design out of its physical range has the status "invalid". Other Python threads run meanwhile; Ctrl-C ends it.
+
+    Examples
+    --------
+    >>> vehicle = wb.read("friction2022")
     >>> voltage = np.linspace(2, 5, 4)
     >>> found = wb.solve_columns({"supply.voltage": voltage, "friction.radius": "2 mm"}, vehicle=vehicle)
     >>> np.round(found.frequency, 1)

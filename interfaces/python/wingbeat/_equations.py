@@ -29,16 +29,19 @@ class EquationsOfMotion:
 
     Parameters
     ----------
-    vehicle : a Vehicle
-    condition : "air", "vacuum" or "wingless"
+    vehicle : Vehicle
+        A Vehicle.
+    condition : str, default 'air'
+        "air", "vacuum" or "wingless".
 
     Raises
     ------
-    InputError : for a condition that there is not
+    InputError
+        For a condition that there is not.
 
-    Example
-    -------
-    >>> equations = wb.read("data/designs/friction2022.toml").equations_of_motion()
+    Examples
+    --------
+    >>> equations = wb.read("friction2022").equations_of_motion()
     >>> equations.states
     ('crank_angle', 'crank_speed', 'current')
     """
@@ -56,21 +59,26 @@ class EquationsOfMotion:
 
         Parameters
         ----------
-        time : since the start [s]
-        state : a number for each of `states`, or an array with a column for each of many states [SI]
-        voltage : what drives the motor in place of the supply [V], through the same resistance
+        time : float
+            Since the start [s].
+        state : array_like
+            A number for each of `states`, or an array with a column for each of many states [SI].
+        voltage : float or str, optional
+            What drives the motor in place of the supply [V], through the same resistance.
 
         Returns
         -------
-        An array of the shape of `state`.
+        numpy.ndarray
+            An array of the shape of `state`.
 
         Raises
         ------
-        InputError : for a state of another size, and numbers that are not finite
+        InputError
+            For a state of another size, and numbers that are not finite.
 
-        Example
-        -------
-        >>> equations = wb.read("data/designs/friction2022.toml").equations_of_motion()
+        Examples
+        --------
+        >>> equations = wb.read("friction2022").equations_of_motion()
         >>> equations.rates(0, [0, 100, 0])[0]
         100.0
         """

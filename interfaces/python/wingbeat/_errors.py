@@ -10,15 +10,19 @@ class InputError(ValueError):
 
     Attributes
     ----------
-    file : the file, or None where the input was no file
-    line, column : from 1, or None
-    key : the key or option it is about, "" where it is about none
-    others : what else is wrong, each an InputError
+    file : str or None
+        The file, or None where the input was no file.
+    line, column : int or None
+        From 1, or None.
+    key : str
+        The key or option it is about, "" where it is about none.
+    others : list of InputError
+        What else is wrong, each an InputError.
 
-    Example
-    -------
+    Examples
+    --------
     >>> try:
-    ...     wb.read("data/designs/friction2022.toml").replace({"motor.inertia": -1})
+    ...     wb.read("friction2022").replace({"motor.inertia": -1})
     ... except wb.InputError as error:
     ...     print(error.key, "|", error)
     motor.inertia | motor.inertia: must be > 0 [kg m2], got -1

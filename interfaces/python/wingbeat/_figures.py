@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from ._arguments import number, refused
+from ._quantity import Quantity
 from ._tables import Metric, metric_called, metric_rows, parameters
 
 try:
@@ -28,8 +29,9 @@ if TYPE_CHECKING:
 
 #: The style file.
 STYLE = str(pathlib.Path(__file__).with_name("figure.mplstyle"))
-#: Widths of a printed figure [mm]: one column and two columns of a journal.
-SINGLE_COLUMN, DOUBLE_COLUMN = 89.0, 183.0
+#: Widths of a printed figure: one column and two columns of a journal.
+SINGLE_COLUMN = Quantity(0.089, "m", "width of a column")
+DOUBLE_COLUMN = Quantity(0.183, "m", "width of two columns")
 #: By meaning, as src/report/style.hpp has them.
 COLOURS: dict[str, str] = {
     "with_springs": "#0072b2",
@@ -127,11 +129,13 @@ def words(key: str) -> str:
 
 
 def inches(width: float | str) -> float:
-    """A width [mm] in inches."""
-    millimetres = 1e3 * number("width", width, "m") if isinstance(width, str) else number("width", width, "1")
-    if not 40.0 <= millimetres <= 1000.0:
-        raise refused("width", f"must be from 40 to 1000 mm, got {width}")
-    return millimetres / 25.4
+    """A width [m] in inches."""
+    metres = number("width", width, "m")
+    if not 0.04 <= metres <= 1.0:
+        hint = '; with its unit it is a text such as "89 mm"'
+        given = str(width) if isinstance(width, str) else f"{float(width):g} m{hint}"
+        raise refused("width", f"must be from 40 to 1000 mm, got {given}")
+    return metres / 0.0254
 
 
 def pinned(ax: Any) -> Any:

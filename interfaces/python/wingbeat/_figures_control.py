@@ -33,30 +33,37 @@ def _outputs_of(models: ControlModels, outputs: Iterable[str] | None) -> list[in
 
 def step(
     models: ControlModels, outputs: Iterable[str] | None = None, *, figure: Figure | None = None,
-    width: float | str = 89,
+    width: float | str = "89 mm",
 ) -> Figure:
     """How the means of a cycle follow a step of each input, over the steady change or, without one, the largest.
 
     Parameters
     ----------
-    models : what `wingbeat.linearise` returns
-    outputs : names of outputs; default: lift, crank speed and electrical power
-    figure : the Figure or SubFigure to draw into; default: a new one
-    width : of a new figure [mm], or a text with a unit
+    models : ControlModels
+        What `wingbeat.linearise` returns.
+    outputs : list of str, optional
+        Names of outputs; default: lift, crank speed and electrical power.
+    figure : matplotlib Figure, optional
+        The Figure or SubFigure to draw into; default: a new one.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The figure, a panel for each input.
+    matplotlib Figure
+        The figure, a panel for each input.
 
     Raises
     ------
-    InputError : for an output that the model does not have
-    ValueError : where the vehicle does not flap
+    InputError
+        For an output that the model does not have.
+    ValueError
+        Where the vehicle does not flap.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import wingbeat.plot
-    >>> figure = wingbeat.plot.step(wb.read("data/designs/friction2022.toml").linearise(maps=False))
+    >>> figure = wingbeat.plot.step(wb.read("friction2022").linearise(maps=False))
     >>> figure.axes[1].get_xlabel(), [line.get_label() for line in figure.axes[0].get_lines()[:2]]
     ('time since the step (ms)', ['lift mean', 'crank speed mean'])
     """
@@ -107,31 +114,39 @@ def _settled(relative: Any) -> int:
 
 def bode(
     models: ControlModels, input: str = "voltage", outputs: Iterable[str] | None = None, *,
-    figure: Figure | None = None, width: float | str = 89,
+    figure: Figure | None = None, width: float | str = "89 mm",
 ) -> Figure:
     """The frequency response of the model from one cycle to the next, to half a flapping frequency.
 
     Parameters
     ----------
-    models : what `wingbeat.linearise` returns
-    input : the name of an input
-    outputs : names of outputs; default: lift, crank speed and electrical power
-    figure : the Figure or SubFigure to draw into; default: a new one
-    width : of a new figure [mm], or a text with a unit
+    models : ControlModels
+        What `wingbeat.linearise` returns.
+    input : str, default 'voltage'
+        The name of an input.
+    outputs : list of str, optional
+        Names of outputs; default: lift, crank speed and electrical power.
+    figure : matplotlib Figure, optional
+        The Figure or SubFigure to draw into; default: a new one.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The figure: gain over the steady gain [dB] and phase [deg] over frequency.
+    matplotlib Figure
+        The figure: gain over the steady gain [dB] and phase [deg] over frequency.
 
     Raises
     ------
-    InputError : for an input or output that the model does not have, and for outputs without a steady gain
-    ValueError : where the vehicle does not flap
+    InputError
+        For an input or output that the model does not have, and for outputs without a steady gain.
+    ValueError
+        Where the vehicle does not flap.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import wingbeat.plot
-    >>> figure = wingbeat.plot.bode(wb.read("data/designs/friction2022.toml").linearise(maps=False))
+    >>> figure = wingbeat.plot.bode(wb.read("friction2022").linearise(maps=False))
     >>> figure.axes[1].get_ylabel()
     'phase (deg)'
     """

@@ -22,27 +22,32 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-def cycle(result: RunResult, *, figure: Figure | None = None, width: float | str = 89) -> Figure:
+def cycle(result: RunResult, *, figure: Figure | None = None, width: float | str = "89 mm") -> Figure:
     """The waveforms of one flapping cycle: motion, lift, rod force or current, powers; pitch of wings on hinges.
 
     Parameters
     ----------
-    result : a RunResult that flaps
-    figure : the Figure or SubFigure to draw into; default: a new one
-    width : of a new figure [mm], or a text with a unit
+    result : RunResult
+        A RunResult that flaps.
+    figure : matplotlib Figure, optional
+        The Figure or SubFigure to draw into; default: a new one.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The figure, a panel for each quantity over the time since stroke reversal.
+    matplotlib Figure
+        The figure, a panel for each quantity over the time since stroke reversal.
 
     Raises
     ------
-    ValueError : unless flapping
+    ValueError
+        Unless flapping.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import wingbeat.plot
-    >>> figure = wingbeat.plot.cycle(wb.read("data/designs/friction2022.toml").solve())
+    >>> figure = wingbeat.plot.cycle(wb.read("friction2022").solve())
     >>> [ax.get_ylabel() for ax in figure.axes[1:4]]
     ['lift (mN)', 'rod force (mN)', 'power (mW)']
     """
@@ -116,30 +121,37 @@ _PARTS = (
 
 
 def power_flow(
-    results: RunResult | Mapping[str, RunResult], *, ax: Axes | None = None, width: float | str = 89
+    results: RunResult | Mapping[str, RunResult], *, ax: Axes | None = None, width: float | str = "89 mm"
 ) -> Axes:
     """Where the electrical power goes, a bar for each result.
 
     Parameters
     ----------
-    results : a RunResult that flaps, or a dict of several with what stands beside their bars
-    ax : the Axes to draw into; default: those of a new figure
-    width : of a new figure [mm], or a text with a unit
-
-    What a formulation adds stands left of zero.
+    results : RunResult or dict
+        A RunResult that flaps, or a dict of several with what stands beside their bars.
+    ax : matplotlib Axes, optional
+        The Axes to draw into; default: those of a new figure.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The Axes.
+    matplotlib Axes
+        The Axes.
 
     Raises
     ------
-    ValueError : unless all flap
+    ValueError
+        Unless all flap.
 
-    Example
-    -------
+    Notes
+    -----
+    What a formulation adds stands left of zero.
+
+    Examples
+    --------
     >>> import wingbeat.plot
-    >>> vehicle = wb.read("data/designs/friction2022.toml")
+    >>> vehicle = wb.read("friction2022")
     >>> ax = wingbeat.plot.power_flow({"3 V": vehicle.solve(voltage=3), "4 V": vehicle.solve(voltage=4)})
     >>> [label.get_text() for label in ax.get_yticklabels()]
     ['3 V', '4 V']
@@ -180,27 +192,32 @@ def power_flow(
     return ax
 
 
-def start_up(start: StartUp, *, figure: Figure | None = None, width: float | str = 89) -> Figure:
+def start_up(start: StartUp, *, figure: Figure | None = None, width: float | str = "89 mm") -> Figure:
     """Crank speed and current over a start-up, with the inrush and the time until flapping is steady.
 
     Parameters
     ----------
-    start : what `wingbeat.simulate` returns
-    figure : the Figure or SubFigure to draw into; default: a new one
-    width : of a new figure [mm], or a text with a unit
+    start : StartUp
+        What `wingbeat.simulate` returns.
+    figure : matplotlib Figure, optional
+        The Figure or SubFigure to draw into; default: a new one.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The figure, a panel for the speed and one for the current.
+    matplotlib Figure
+        The figure, a panel for the speed and one for the current.
 
     Raises
     ------
-    TypeError : for another kind of result
+    TypeError
+        For another kind of result.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import wingbeat.plot
-    >>> figure = wingbeat.plot.start_up(wb.read("data/designs/friction2022.toml").simulate())
+    >>> figure = wingbeat.plot.start_up(wb.read("friction2022").simulate())
     >>> [ax.get_ylabel() for ax in figure.axes]
     ['crank speed (rad/s)', 'current (mA)']
     """
@@ -232,27 +249,32 @@ def start_up(start: StartUp, *, figure: Figure | None = None, width: float | str
     return figure
 
 
-def flight(found: Flight, *, figure: Figure | None = None, width: float | str = 89) -> Figure:
+def flight(found: Flight, *, figure: Figure | None = None, width: float | str = "89 mm") -> Figure:
     """Lift, powers, voltage and charge over a flight to the end of the battery, hatched outside the model's domain.
 
     Parameters
     ----------
-    found : what `wingbeat.endurance` returns
-    figure : the Figure or SubFigure to draw into; default: a new one
-    width : of a new figure [mm], or a text with a unit
+    found : Flight
+        What `wingbeat.endurance` returns.
+    figure : matplotlib Figure, optional
+        The Figure or SubFigure to draw into; default: a new one.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The figure, a panel for each quantity.
+    matplotlib Figure
+        The figure, a panel for each quantity.
 
     Raises
     ------
-    ValueError : where the vehicle does not flap
+    ValueError
+        Where the vehicle does not flap.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import wingbeat.plot
-    >>> figure = wingbeat.plot.flight(wb.read("data/designs/friction2022-battery.toml").endurance())
+    >>> figure = wingbeat.plot.flight(wb.read("friction2022-battery").endurance())
     >>> figure.axes[-1].get_ylabel()
     'charge (%)'
     """

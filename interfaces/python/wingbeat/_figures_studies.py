@@ -24,28 +24,35 @@ if TYPE_CHECKING:
 
 def front(
     found: Front, across: str | None = None, up: str | None = None, *, ax: Axes | None = None,
-    width: float | str = 89,
+    width: float | str = "89 mm",
 ) -> Axes:
     """The designs of a front, in two of their metrics, with its ends and its knee.
 
     Parameters
     ----------
-    found : what `wingbeat.optimise` returns for several objectives
-    across, up : the metrics along the axes; default: the first two objectives
-    ax : the Axes to draw into; default: those of a new figure
-    width : of a new figure [mm], or a text with a unit
+    found : Front
+        What `wingbeat.optimise` returns for several objectives.
+    across, up : str, optional
+        The metrics along the axes; default: the first two objectives.
+    ax : matplotlib Axes, optional
+        The Axes to draw into; default: those of a new figure.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The Axes.
+    matplotlib Axes
+        The Axes.
 
     Raises
     ------
-    InputError : for an unknown metric
-    ValueError : where no design was found
+    InputError
+        For an unknown metric.
+    ValueError
+        Where no design was found.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import wingbeat.plot
     >>> fronts = {
     ...     "search": {"population": 40, "generations": 5},
@@ -55,7 +62,7 @@ def front(
     ...     ],
     ...     "parameter": [{"key": "supply.voltage", "lower": 2, "upper": 8}],
     ... }
-    >>> found = wb.optimise(fronts, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> found = wb.optimise(fronts, vehicle=wb.read("friction2022"))
     >>> wingbeat.plot.front(found).get_xlabel()
     'mean lift (mN)'
     """
@@ -89,27 +96,32 @@ def front(
     return ax
 
 
-def residuals(found: Found, *, figure: Figure | None = None, width: float | str = 89) -> Figure:
+def residuals(found: Found, *, figure: Figure | None = None, width: float | str = "89 mm") -> Figure:
     """A fit against its measurements, and what is left, in standard deviations, in the order of the logs.
 
     Parameters
     ----------
-    found : what `wingbeat.fit` returns
-    figure : the Figure or SubFigure to draw into; default: a new one
-    width : of a new figure [mm], or a text with a unit
+    found : Found
+        What `wingbeat.fit` returns.
+    figure : matplotlib Figure, optional
+        The Figure or SubFigure to draw into; default: a new one.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The figure: above, fitted over measured values, each over the largest of its quantity; below, the residuals.
+    matplotlib Figure
+        The figure: above, fitted over measured values, each over the largest of its quantity; below, the residuals.
 
     Raises
     ------
-    ValueError : where nothing was fitted
+    ValueError
+        Where nothing was fitted.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import wingbeat.plot
-    >>> figure = wingbeat.plot.residuals(wb.fit("data/bench/flapper.toml", profiles=False))
+    >>> figure = wingbeat.plot.residuals(wb.fit("flapper", profiles=False))
     >>> [label.get_text() for label in figure.axes[1].get_xticklabels()]
     ['air', 'vacuum', 'wingless']
     """
@@ -157,31 +169,37 @@ _ASKED = ("frequency", "power_electrical", "lift_mean", "lift_to_weight", "strok
 
 def tolerance(
     found: StudyResult, metrics: Iterable[str] | None = None, *, ax: Axes | None = None,
-    width: float | str = 89,
+    width: float | str = "89 mm",
 ) -> Axes:
     """How far metrics scatter about their medians: 95 % of the vehicles (bar) and all of them (line).
 
     Parameters
     ----------
-    found : what `wingbeat.tolerance` returns
-    metrics : names of metrics; default: frequency, power, lift, stroke amplitude and efficiency, those that scatter
-    ax : the Axes to draw into; default: those of a new figure
-    width : of a new figure [mm], or a text with a unit
+    found : StudyResult
+        What `wingbeat.tolerance` returns.
+    metrics : list of str, optional
+        Names of metrics; default: frequency, power, lift, stroke amplitude and efficiency, those that scatter.
+    ax : matplotlib Axes, optional
+        The Axes to draw into; default: those of a new figure.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The Axes, a row for each metric.
+    matplotlib Axes
+        The Axes, a row for each metric.
 
     Raises
     ------
-    InputError : for a metric that the study does not have, or whose median is 0
+    InputError
+        For a metric that the study does not have, or whose median is 0.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import wingbeat.plot
     >>> spread = {"key": "friction.radius", "distribution": "normal", "relative_deviation": 0.05}
     >>> study = {"samples": {"count": 128}, "parameter": [spread]}
-    >>> found = wb.tolerance(study, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> found = wb.tolerance(study, vehicle=wb.read("friction2022"))
     >>> wingbeat.plot.tolerance(found, ["lift_mean"]).get_xlabel()
     'deviation from the median (%)'
     """
@@ -215,31 +233,37 @@ def tolerance(
 
 
 def sensitivity(
-    found: StudyResult, metric: str, *, ax: Axes | None = None, width: float | str = 89
+    found: StudyResult, metric: str, *, ax: Axes | None = None, width: float | str = "89 mm"
 ) -> Axes:
     """Which uncertain parameters a metric's variance comes from, with 95 % intervals, the greatest share first.
 
     Parameters
     ----------
-    found : what `wingbeat.tolerance` returns
-    metric : the name of a metric
-    ax : the Axes to draw into; default: those of a new figure
-    width : of a new figure [mm], or a text with a unit
+    found : StudyResult
+        What `wingbeat.tolerance` returns.
+    metric : str
+        The name of a metric.
+    ax : matplotlib Axes, optional
+        The Axes to draw into; default: those of a new figure.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The Axes, a row for each parameter.
+    matplotlib Axes
+        The Axes, a row for each parameter.
 
     Raises
     ------
-    InputError : for a metric without shares of its variance
+    InputError
+        For a metric without shares of its variance.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import wingbeat.plot
     >>> spread = {"key": "friction.radius", "distribution": "normal", "relative_deviation": 0.05}
     >>> study = {"samples": {"count": 128}, "parameter": [spread]}
-    >>> found = wb.tolerance(study, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> found = wb.tolerance(study, vehicle=wb.read("friction2022"))
     >>> wingbeat.plot.sensitivity(found, "lift_mean").get_yticklabels()[0].get_text()
     'friction radius'
     """

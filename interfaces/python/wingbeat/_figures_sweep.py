@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import MaxNLocator
 
-from ._accessor import DataSet
+from ._accessor import DataSet, status_of
 from ._arguments import refused, wrong_type
 from ._figures import (
     COLOURS, DASH_DOTTED, DASHED, DOTTED, ORDERED, SOLID, axes_of, display, key, label_y, largest,
@@ -75,7 +75,7 @@ def metric_values(data: xarray.Dataset, metric: str) -> tuple[xarray.DataArray, 
     row = metric_row(metric)
     if row.key not in data:
         raise refused("metric", f"the data set has no {row.name}")
-    values = data[row.key].where(data["status"] == 0)
+    values = data[row.key].where(status_of(data) == "flapping")
     factor, unit = metric_display(row, values.values)
     return values * factor, row.long_name, unit
 
@@ -203,7 +203,7 @@ def draw_contours(ax: Any, data: xarray.Dataset, metric: str) -> None:
         entries.append(Patch(facecolor="none", edgecolor=BOUNDARY, hatch="////", label="outside the model's domain"))
     weight = DataSet(data).lift_to_weight if "lift_to_weight" in data else None
     if weight is not None:
-        lifted = np.nan_to_num(gridded(weight.where(data["status"] == 0)))
+        lifted = np.nan_to_num(gridded(weight.where(status_of(data) == "flapping")))
         if (lifted >= 1.0).any() and (lifted < 1.0).any():
             ax.contour(x, y, lifted, levels=[1.0], colors="white", linewidths=2.4)
             ax.contour(x, y, lifted, levels=[1.0], colors="black", linewidths=1.1, linestyles=[(0, (5, 2))])
@@ -222,7 +222,7 @@ def draw_contours(ax: Any, data: xarray.Dataset, metric: str) -> None:
 
 
 def lines(
-    data: xarray.Dataset, metric: str, *, ax: Axes | None = None, width: float | str = 89
+    data: xarray.Dataset, metric: str, *, ax: Axes | None = None, width: float | str = "89 mm"
 ) -> Axes:
     """A metric of a sweep over its axis of numbers, a curve for each combination of its other axes.
 
@@ -231,23 +231,29 @@ def lines(
 
     Parameters
     ----------
-    data : the data set of a sweep
-    metric : the name of a metric
-    ax : the Axes to draw into; default: those of a new figure
-    width : of a new figure [mm], or a text with a unit
+    data : xarray.Dataset
+        The data set of a sweep.
+    metric : str
+        The name of a metric.
+    ax : matplotlib Axes, optional
+        The Axes to draw into; default: those of a new figure.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The Axes.
+    matplotlib Axes
+        The Axes.
 
     Raises
     ------
-    InputError : for a metric that the data set does not have, and for a sweep of no or of several axes of numbers
+    InputError
+        For a metric that the data set does not have, and for a sweep of no or of several axes of numbers.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import wingbeat.plot
-    >>> vehicle = wb.read("data/designs/friction2022-springs.toml")
+    >>> vehicle = wb.read("friction2022-springs")
     >>> data = vehicle.sweep({"supply.voltage": [2, 3, 4], "springs": [True, False]})
     >>> wingbeat.plot.lines(data, "lift_mean").get_ylabel()
     'mean lift (mN)'
@@ -259,29 +265,35 @@ def lines(
 
 
 def trends(
-    data: xarray.Dataset, metrics: Iterable[str], *, figure: Figure | None = None, width: float | str = 89
+    data: xarray.Dataset, metrics: Iterable[str], *, figure: Figure | None = None, width: float | str = "89 mm"
 ) -> Figure:
     """Several metrics of a sweep over the same axis of numbers, a panel each: see `wingbeat.plot.lines`.
 
     Parameters
     ----------
-    data : the data set of a sweep
-    metrics : names of metrics
-    figure : the Figure or SubFigure to draw into; default: a new one
-    width : of a new figure [mm], or a text with a unit
+    data : xarray.Dataset
+        The data set of a sweep.
+    metrics : list of str
+        Names of metrics.
+    figure : matplotlib Figure, optional
+        The Figure or SubFigure to draw into; default: a new one.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The figure.
+    matplotlib Figure
+        The figure.
 
     Raises
     ------
-    InputError : as of `lines`
+    InputError
+        As of `lines`.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import wingbeat.plot
-    >>> data = wb.read("data/designs/friction2022.toml").sweep({"supply.voltage": [2, 3, 4]})
+    >>> data = wb.read("friction2022").sweep({"supply.voltage": [2, 3, 4]})
     >>> len(wingbeat.plot.trends(data, ["lift_mean", "efficiency_system"]).axes)
     2
     """
@@ -299,7 +311,7 @@ def trends(
 
 
 def contours(
-    data: xarray.Dataset, metric: str, *, ax: Axes | None = None, width: float | str = 89
+    data: xarray.Dataset, metric: str, *, ax: Axes | None = None, width: float | str = "89 mm"
 ) -> Axes:
     """A metric of a sweep over its two axes of numbers, with a colour bar.
 
@@ -308,24 +320,30 @@ def contours(
 
     Parameters
     ----------
-    data : the data set of a sweep
-    metric : the name of a metric
-    ax : the Axes to draw into; default: those of a new figure
-    width : of a new figure [mm], or a text with a unit
+    data : xarray.Dataset
+        The data set of a sweep.
+    metric : str
+        The name of a metric.
+    ax : matplotlib Axes, optional
+        The Axes to draw into; default: those of a new figure.
+    width : float or str, default "89 mm"
+        Width of a new figure [m], or a text with a unit: "89 mm" is a column of a journal, "183 mm" two.
 
     Returns
     -------
-    The Axes.
+    matplotlib Axes
+        The Axes.
 
     Raises
     ------
-    InputError : for a metric that the data set does not have, and for a sweep of other than two axes of numbers
+    InputError
+        For a metric that the data set does not have, and for a sweep of other than two axes of numbers.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import wingbeat.plot
     >>> axes = {"supply.voltage": [2, 3, 4], "transmission.crank_radius": ["5 mm", "6 mm"]}
-    >>> data = wb.read("data/designs/friction2022.toml").sweep(axes)
+    >>> data = wb.read("friction2022").sweep(axes)
     >>> wingbeat.plot.contours(data, "lift_mean").get_xlabel()
     'supply voltage (V)'
     """

@@ -30,9 +30,9 @@ class LinearModel:
 
     `dt` [s] is the time step, None of a model in continuous time.
 
-    Example
-    -------
-    >>> model = wb.read("data/designs/friction2022.toml").linearise(maps=False).discrete
+    Examples
+    --------
+    >>> model = wb.read("friction2022").linearise(maps=False).discrete
     >>> model.states, model.A.shape, f"{model.dt:.5f} s"
     (['crank_speed', 'current'], (2, 2), '0.04555 s')
     """
@@ -50,9 +50,21 @@ class LinearModel:
     def to_scipy(self) -> Any:
         """As scipy.signal.StateSpace, with `dt` where it has one.
 
+        Returns
+        -------
+        scipy.signal.StateSpace
+            Of deviations in SI units, with the time step [s] where the model is discrete.
+
         Raises
         ------
-        ImportError : where SciPy is not installed
+        ImportError
+            Where SciPy is not installed.
+
+        Examples
+        --------
+        >>> system = wb.read("friction2022").linearise(maps=False).discrete.to_scipy()
+        >>> system.A.shape, f"{system.dt:.5f} s"
+        ((2, 2), '0.04555 s')
         """
         signal = importlib.import_module("scipy.signal")
         matrices = (self.A, self.B, self.C, self.D)
@@ -61,9 +73,21 @@ class LinearModel:
     def to_control(self) -> Any:
         """As control.StateSpace of the package `control`, with names.
 
+        Returns
+        -------
+        control.StateSpace
+            Of deviations in SI units, with the time step [s] where the model is discrete.
+
         Raises
         ------
-        ImportError : where `control` is not installed
+        ImportError
+            Where `control` is not installed.
+
+        Examples
+        --------
+        >>> model = wb.read("friction2022").linearise(maps=False).discrete
+        >>> model.to_control().input_labels  # doctest: +SKIP
+        ['voltage', 'load_torque']
         """
         control = importlib.import_module("control")
         return control.ss(
@@ -85,9 +109,9 @@ class LinearModel:
 class ControlModels(StudyResult):
     """Linear models about steady flapping, static maps and body derivatives: the keys of `wingbeat linearise --json`.
 
-    Example
-    -------
-    >>> models = wb.read("data/designs/friction2022.toml").linearise(maps=False)
+    Examples
+    --------
+    >>> models = wb.read("friction2022").linearise(maps=False)
     >>> models.discrete.inputs
     ['voltage', 'load_torque']
     """
@@ -104,7 +128,8 @@ class ControlModels(StudyResult):
 
         Raises
         ------
-        ValueError : where the vehicle does not flap
+        ValueError
+            Where the vehicle does not flap.
         """
         model = self._model()
         return LinearModel(model, _names(model["inputs"]), _names(model["outputs"]), float(model["period_s"]))
@@ -115,7 +140,8 @@ class ControlModels(StudyResult):
 
         Raises
         ------
-        ValueError : where the vehicle does not flap
+        ValueError
+            Where the vehicle does not flap.
         """
         model = self._model()
         return LinearModel(model["continuous"], _names(model["inputs"]), _names(model["outputs"]), None)
@@ -137,26 +163,36 @@ def linearise(
 
     Parameters
     ----------
-    vehicle : a Vehicle
-    condition : "air", "vacuum" or "wingless"
-    frequency : of the operating point, which the voltage follows [Hz]
-    lift : of the operating point, in place of a frequency [N]
-    allow_extrapolation : searches for them outside the model's domain too
-    cycles : of the step responses; 0: about five time constants
-    hinge_offset : from the body's middle plane to the axis of a wing's stroke [m]
-    maps : False: without the static maps, which take most of the time
+    vehicle : Vehicle
+        A Vehicle.
+    condition : str, default 'air'
+        "air", "vacuum" or "wingless".
+    frequency : float or str, optional
+        Of the operating point, which the voltage follows [Hz].
+    lift : float or str, optional
+        Of the operating point, in place of a frequency [N].
+    allow_extrapolation : bool, default False
+        Searches for them outside the model's domain too.
+    cycles : int, default 0
+        Of the step responses; 0: about five time constants.
+    hinge_offset : float or str, default 0.0
+        From the body's middle plane to the axis of a wing's stroke [m].
+    maps : bool, default True
+        False: without the static maps, which take most of the time.
 
     Returns
     -------
-    The ControlModels; `discrete` and `continuous` are the linear models.
+    ControlModels
+        The ControlModels; `discrete` and `continuous` are the linear models.
 
     Raises
     ------
-    InputError : for options that cannot be used
+    InputError
+        For options that cannot be used.
 
-    Example
-    -------
-    >>> models = wb.linearise(wb.read("data/designs/friction2022.toml"), frequency="22 Hz", maps=False)
+    Examples
+    --------
+    >>> models = wb.linearise(wb.read("friction2022"), frequency="22 Hz", maps=False)
     >>> f"{models['model']['period_s']:.5f} s"
     '0.04545 s'
     """

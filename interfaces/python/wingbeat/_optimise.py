@@ -7,15 +7,16 @@ import os
 import pathlib
 import shutil
 from collections.abc import Callable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
 from . import _core
 from ._arguments import callback, flag, number, real, refused, text, threads_of, wrong_type
+from ._operations import operation
 from ._progress import shown
 from ._result import RunResult
-from ._studies import Found, Study, _file_of, values_of
+from ._studies import Found, Study, file_of, values_of, vehicle_and_study, vehicle_first
 from ._tables import metric_called, metric_index, metric_rows, parameters
 from ._vehicle import Vehicle
 
@@ -26,8 +27,8 @@ if TYPE_CHECKING:
 class Front(Found):
     """The designs that no other beats in every objective; `vehicle` is that at the knee, None where none was found.
 
-    Example
-    -------
+    Examples
+    --------
     >>> fronts = {
     ...     "search": {"population": 40, "generations": 5},
     ...     "objective": [
@@ -36,7 +37,7 @@ class Front(Found):
     ...     ],
     ...     "parameter": [{"key": "supply.voltage", "lower": 2, "upper": 8}],
     ... }
-    >>> front = wb.optimise(fronts, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> front = wb.optimise(wb.read("friction2022"), fronts)
     >>> len(front.all_vehicles) == front.designs.sizes["design"]
     True
     """
@@ -71,13 +72,13 @@ class Front(Found):
 class OwnOptimum(Found):
     """An optimum by functions of the user's own: `value`, `parameters`, `outcome`, how the searches ended.
 
-    Example
-    -------
+    Examples
+    --------
     >>> study = {
     ...     "objective": {"minimise": lambda result: (result.frequency - 22) ** 2, "starts": 1},
     ...     "parameter": [{"key": "supply.voltage", "lower": 2, "upper": 5}],
     ... }
-    >>> found = wb.optimise(study, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> found = wb.optimise(wb.read("friction2022"), study)
     >>> f"{found.result.frequency:.2f} Hz"
     '22.00 Hz'
     """
@@ -86,10 +87,33 @@ class OwnOptimum(Found):
     result: RunResult | None
 
 
+@overload
+def optimise(
+    vehicle: Vehicle,
+    study: Mapping[str, Any],
+    *,
+    values: Mapping[str, Any] | None = None,
+    allow_extrapolation: bool = False,
+    threads: int = 0,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> Found: ...
+@overload
 def optimise(
     study: Study,
+    /,
     *,
     vehicle: Vehicle | None = None,
+    values: Mapping[str, Any] | None = None,
+    allow_extrapolation: bool = False,
+    threads: int = 0,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> Found: ...
+@operation
+@vehicle_first("study")
+def optimise(
+    vehicle: Vehicle | Study,
+    study: Mapping[str, Any] | None = None,
+    *,
     values: Mapping[str, Any] | None = None,
     allow_extrapolation: bool = False,
     threads: int = 0,
@@ -99,14 +123,36 @@ def optimise(
 
     Parameters
     ----------
-    study : study file (TOML), or a dict of its tables; a file names its vehicle
-    vehicle : of a study that is a dict
-    values : keys of the vehicle with other values
-    allow_extrapolation : designs outside the model's domain count
-    threads : at most so many; 0: one for each core
-    progress : of a front: True shows a bar (tqdm where it is installed), a function is called with designs done and
-        designs
+    vehicle : Vehicle, path or dict
+        A Vehicle; or the study alone, as the path of a study file (TOML), the name of a shipped one, or a dict of its
+        tables, which names its vehicle.
+    study : dict
+        Of a Vehicle: the tables of a study file, without a vehicle.
+    values : dict, optional
+        Keys of the vehicle with other values: SI numbers, or texts with a unit.
+    allow_extrapolation : bool, default False
+        Designs outside the model's domain count.
+    threads : int, default 0
+        At most so many; 0: one for each core.
+    progress : bool or function, optional
+        Of a front: True shows a bar (tqdm where it is installed), a function is called with designs done and designs.
 
+    Returns
+    -------
+    Found
+        A Found; of several objectives a Front, by functions an OwnOptimum.
+
+    Raises
+    ------
+    InputError
+        For a study that cannot be used.
+    TypeError
+        For a Vehicle without a study, and for a Vehicle beside a study file, which names its own.
+    Exception
+        Whatever a function raises.
+
+    Notes
+    -----
     In a dict, what `minimise`, `maximise` or the `metric` of a constraint names may be a function of the result of a
     design, which flaps: `{"objective": {"minimise": f}, "constraint": [{"metric": g, "at_most": 2}]}`. It returns a
     number [SI], or a number and its derivatives by whatever it uses, a dict by names of metrics and keys of parameters:
@@ -120,33 +166,25 @@ def optimise(
 
     Ctrl-C ends it.
 
-    Returns
-    -------
-    A Found; of several objectives a Front, by functions an OwnOptimum.
-
-    Raises
-    ------
-    InputError : for a study that cannot be used
-    Exception : whatever a function raises
-
-    Example
-    -------
+    Examples
+    --------
     >>> study = {
     ...     "objective": {"maximise": "efficiency_system"},
     ...     "parameter": [{"key": "transmission.crank_radius", "lower": 0.004, "upper": 0.007}],
     ... }
-    >>> found = wb.optimise(study, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> found = wb.optimise(wb.read("friction2022"), study)
     >>> 0.004 <= found.vehicle.transmission.crank_radius <= 0.007
     True
     """
+    base, tables = vehicle_and_study(vehicle, study)
     overrides, extrapolate = values_of(values), flag("allow_extrapolation", allow_extrapolation)
     threads, tells = threads_of(threads), callback(progress)
-    if isinstance(study, Mapping):
-        own = _OwnProblem(study)
+    if isinstance(tables, Mapping):
+        own = _OwnProblem(tables)
         if own.functions:
-            with _file_of(own.study, vehicle) as file:
+            with file_of(own.study, base) as file:
                 return own.solved(file, overrides, extrapolate)
-    with _file_of(study, vehicle) as file, shown(tells, 0) as tell:
+    with file_of(tables, base) as file, shown(tells, 0) as tell:
         found = _core.optimise(file, overrides, extrapolate, threads, _module_folders(), tell)
         return Front(found) if "picks" in found else Found(found)
 

@@ -50,27 +50,35 @@ def motor_curves(
 
     Parameters
     ----------
-    motor : a Vehicle, or the keys of its section [motor] as a dict, with all constants that a vehicle file needs
-    voltage : at the terminals [V]; of a dict needed, of a vehicle its supply's where not given
-    speed : array [rad/s], >= 0; default: from rest to no load
-
-    Of several motors on one supply currents, torques and powers are the sums. Friction of the mechanism is no part of it;
-    the motor is as warm as its surroundings.
+    motor : Vehicle or dict
+        A Vehicle, or the keys of its section [motor] as a dict, with all constants that a vehicle file needs.
+    voltage : float or str, optional
+        At the terminals [V]; of a dict needed, of a vehicle its supply's where not given.
+    speed : array_like, optional
+        Array [rad/s], >= 0; default: from rest to no load.
 
     Returns
     -------
-    A data set over `speed`: current [A], torque [N m], electrical and mechanical power [W], and efficiency, their ratio,
-    absent (NaN) where the load drives the motor; as scalars `no_load_speed` [rad/s], `no_load_current` [A],
-    `stall_current` [A] and `stall_torque` [N m].
+    xarray.Dataset
+        A data set over `speed`: current [A], torque [N m], electrical and mechanical power [W], and efficiency, their
+        ratio, absent (NaN) where the load drives the motor; as scalars `no_load_speed` [rad/s], `no_load_current`
+        [A], `stall_current` [A] and `stall_torque` [N m].
 
     Raises
     ------
-    InputError : for keys and values that cannot be used
-    TypeError : of a dict without a voltage
+    InputError
+        For keys and values that cannot be used.
+    TypeError
+        Of a dict without a voltage.
 
-    Example
-    -------
-    >>> curves = wb.motor_curves(wb.read("data/designs/friction2022.toml"), voltage="3 V")
+    Notes
+    -----
+    Of several motors on one supply currents, torques and powers are the sums. Friction of the mechanism is no part of it;
+    the motor is as warm as its surroundings.
+
+    Examples
+    --------
+    >>> curves = wb.motor_curves(wb.read("friction2022"), voltage="3 V")
     >>> f"{float(curves.stall_current):.4f} A"
     '0.3333 A'
     """
@@ -114,22 +122,27 @@ def coefficient_curves(
 
     Parameters
     ----------
-    aerodynamics : a Vehicle, or the value of the key aerodynamics.coefficients: the name of a set
-        ("translational-2022", "normal-force-robofly") or the dict of a set of one's own
-    angle_of_attack : array [rad]; default: 0 to 90 deg
+    aerodynamics : Vehicle, str or dict
+        A Vehicle, or the value of the key aerodynamics.coefficients: the name of a set ("translational-2022",
+        "normal-force-robofly") or the dict of a set of one's own.
+    angle_of_attack : array_like, optional
+        Array [rad]; default: 0 to 90 deg.
 
     Returns
     -------
-    A data set over `angle_of_attack`: lift C_L, drag C_D and the coefficient of the force normal to the chord C_N [1]; of
-    wings on hinges the centre of pressure behind the leading edge over the chord [1] as well.
+    xarray.Dataset
+        A data set over `angle_of_attack`: lift C_L, drag C_D and the coefficient of the force normal to the chord C_N
+        [1]; of wings on hinges the centre of pressure behind the leading edge over the chord [1] as well.
 
     Raises
     ------
-    InputError : for a set that there is not, and values that cannot be used
-    TypeError : for what is neither a vehicle nor a set
+    InputError
+        For a set that there is not, and values that cannot be used.
+    TypeError
+        For what is neither a vehicle nor a set.
 
-    Example
-    -------
+    Examples
+    --------
     >>> curves = wb.coefficient_curves("translational-2022", angle_of_attack=["45 deg"])
     >>> f"{float(curves.lift[0]):.3f}"
     '1.805'
@@ -165,22 +178,27 @@ def kinematics(transmission: Vehicle | Mapping[str, Any], *, crank_angle: Any = 
 
     Parameters
     ----------
-    transmission : a Vehicle, or the keys of its section [transmission] as a dict
-    crank_angle : array [rad]; default: one turn
+    transmission : Vehicle or dict
+        A Vehicle, or the keys of its section [transmission] as a dict.
+    crank_angle : array_like, optional
+        Array [rad]; default: one turn.
 
     Returns
     -------
-    A data set over `crank_angle`: the stroke angle [rad], its first and second derivative by the crank angle [1], and the
-    levers of the internal force (of a slider-crank the rod force) on the crank and on all wings [m]; the stroke amplitude
-    [rad] as a scalar, and the crank angles [rad] at which the stroke turns over the dimension `reversal`.
+    xarray.Dataset
+        A data set over `crank_angle`: the stroke angle [rad], its first and second derivative by the crank angle [1],
+        and the levers of the internal force (of a slider-crank the rod force) on the crank and on all wings [m]; the
+        stroke amplitude [rad] as a scalar, and the crank angles [rad] at which the stroke turns over the dimension
+        `reversal`.
 
     Raises
     ------
-    InputError : for keys and values that cannot be used, and for a direct drive
+    InputError
+        For keys and values that cannot be used, and for a direct drive.
 
-    Example
-    -------
-    >>> stroke = wb.kinematics(wb.read("data/designs/friction2022.toml"))
+    Examples
+    --------
+    >>> stroke = wb.kinematics(wb.read("friction2022"))
     >>> f"{np.degrees(float(stroke.stroke_amplitude)):.2f} deg"
     '39.81 deg'
     """

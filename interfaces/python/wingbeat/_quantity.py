@@ -8,16 +8,20 @@ class Quantity(float):
 
     Parameters
     ----------
-    value : the number, SI
-    unit : its unit, "1" for a plain number
-    long_name : what it is
+    value : float
+        The number, SI.
+    unit : str, default '1'
+        Its unit, "1" for a plain number.
+    long_name : str, default ''
+        What it is.
 
     Raises
     ------
-    ValueError : for what is not a number
+    ValueError
+        For what is not a number.
 
-    Example
-    -------
+    Examples
+    --------
     >>> length = wb.Quantity(0.005, "m", "crank radius")
     >>> length, 2 * length, length.unit
     (0.005 m, 0.01, 'm')

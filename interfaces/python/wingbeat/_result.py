@@ -1,17 +1,14 @@
-"""One vehicle: its steady flapping, and its start-up in time."""
+"""One vehicle: what its steady flapping is like, and its start-up in time."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, overload
 
 import numpy as np
 
 from . import _core
-from ._arguments import (
-    HELD, flag, names, number, numbers_of, one_of, optional_number, refused, text, wrong_type,
-)
-from ._ensemble import Ensemble, is_columns, solve_columns
+from ._arguments import HELD, names, number, numbers_of, refused, text
 from ._metrics import WithMetrics
 from ._operations import operation
 from ._quantity import Quantity
@@ -29,9 +26,9 @@ CYCLE_POINTS = 361
 class Event(NamedTuple):
     """What happens to a vehicle in time.
 
-    Example
-    -------
-    >>> start = wb.read("data/designs/friction2022.toml").simulate()
+    Examples
+    --------
+    >>> start = wb.read("friction2022").simulate()
     >>> start.events[0].kind
     'force-sign-change'
     """
@@ -44,9 +41,9 @@ class Event(NamedTuple):
 class EnergyBalance(NamedTuple):
     """Mean powers of a cycle [W]: the electrical input and where it goes.
 
-    Example
-    -------
-    >>> balance = wb.read("data/designs/friction2022.toml").solve(tolerance=1e-9).energy_balance
+    Examples
+    --------
+    >>> balance = wb.read("friction2022").solve(tolerance=1e-9).energy_balance
     >>> abs(balance.error) < 1e-6
     True
     """
@@ -74,9 +71,9 @@ class RunResult(WithMetrics):
 
     Metrics are attributes: `result.lift_mean`, None where there is none (no flapping, no mass given).
 
-    Example
-    -------
-    >>> result = wb.read("data/designs/friction2022.toml").solve(voltage="3 V")
+    Examples
+    --------
+    >>> result = wb.read("friction2022").solve(voltage="3 V")
     >>> result.status, f"{1e3 * result.lift_mean:.2f} mN"
     ('flapping', '8.74 mN')
     >>> result.cycle.lift.sizes["time"]
@@ -123,7 +120,8 @@ class RunResult(WithMetrics):
 
         Raises
         ------
-        ValueError : unless flapping
+        ValueError
+            Unless flapping.
         """
         if self._cycle is None:
             if self.status != "flapping":
@@ -145,20 +143,24 @@ class RunResult(WithMetrics):
 
         Parameters
         ----------
-        metric : the name of a metric
-        keys : a key, or a list of keys
+        metric : str
+            The name of a metric.
+        keys : str or list of str
+            A key, or a list of keys.
 
         Returns
         -------
-        A number for a key, an array for a list of keys [unit of the metric per unit of the key].
+        float or numpy.ndarray
+            A number for a key, an array for a list of keys [unit of the metric per unit of the key].
 
         Raises
         ------
-        InputError : for an unknown key or metric, and for a key without a value in the vehicle
+        InputError
+            For an unknown key or metric, and for a key without a value in the vehicle.
 
-        Example
-        -------
-        >>> result = wb.read("data/designs/friction2022.toml").solve(tolerance=1e-9)
+        Examples
+        --------
+        >>> result = wb.read("friction2022").solve(tolerance=1e-9)
         >>> f"{result.gradient('frequency', 'supply.voltage'):.3f} Hz/V"
         '5.669 Hz/V'
         """
@@ -214,113 +216,12 @@ def _waveform(columns: Sequence[Any]) -> xarray.Dataset:
     return xarray.Dataset(named).set_coords(["time", "crank_angle"])
 
 
-@overload
-def solve(
-    vehicle: Vehicle,
-    /,
-    *,
-    voltage: float | str | None = None,
-    frequency: float | str | None = None,
-    lift: float | str | None = None,
-    lift_to_weight: float | None = None,
-    power: float | str | None = None,
-    angle_of_attack: float | str | None = None,
-    condition: str = "air",
-    method: str = "orbit",
-    tolerance: float = 1e-6,
-    allow_extrapolation: bool = False,
-    endurance: bool = False,
-) -> RunResult: ...
-@overload
-def solve(columns: Mapping[str, Any], /, **options: Any) -> Ensemble: ...
-@operation
-def solve(vehicle: Vehicle | Mapping[str, Any], /, **options: Any) -> RunResult | Ensemble:
-    """What a vehicle does from rest: its steady flapping with all metrics, or the status with the evidence.
-
-    Parameters
-    ----------
-    vehicle : a Vehicle; or a dict or DataFrame of columns, one design a row: see wingbeat.solve_columns
-    voltage : the supply's [V], in place of the vehicle's
-    frequency : [Hz], in place of a voltage: the voltage is found that yields it (a direct drive's supply has it)
-    lift : [N], in place of either: the voltage (pwm: the duty) is found that yields this mean lift
-    lift_to_weight : the same for the lift over the weight; 1: hover
-    power : [W], the same for the mean electrical power
-    angle_of_attack : [rad], at mid-stroke: the aerodynamics.pitch_coefficient is found that leads to it
-    condition : "air", "vacuum" or "wingless"
-    method : "orbit", or "transient": simulated from rest
-    tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
-    allow_extrapolation : a search for a frequency, a lift or a power may leave the model's domain
-    endurance : of a vehicle on a battery: how long it hovers and how long it flaps, too, which costs a flight
-
-    Returns
-    -------
-    A RunResult, whether it flaps or not; of columns an Ensemble.
-
-    Raises
-    ------
-    InputError : for options that cannot be used, and for more than one of voltage, frequency, lift,
-        lift_to_weight and power
-    TypeError : for what is neither a vehicle nor columns
-
-    Example
-    -------
-    >>> vehicle = wb.read("data/designs/friction2022.toml")
-    >>> result = wb.solve(vehicle, frequency="22 Hz")
-    >>> f"{result.frequency:.2f} Hz at {result.vehicle.supply.voltage:.3f} V"
-    '22.00 Hz at 3.008 V'
-    >>> vehicle.solve(voltage=0).status
-    'stalled'
-    """
-    if isinstance(vehicle, Vehicle):
-        return _solve(vehicle, **options)
-    if not is_columns(vehicle):
-        raise wrong_type("vehicle", "a wingbeat.Vehicle, or a dict or DataFrame of columns", vehicle)
-    return solve_columns(vehicle, **options)
-
-
-def _solve(
-    vehicle: Vehicle,
-    *,
-    voltage: float | str | None = None,
-    frequency: float | str | None = None,
-    lift: float | str | None = None,
-    lift_to_weight: float | None = None,
-    power: float | str | None = None,
-    angle_of_attack: float | str | None = None,
-    condition: str = "air",
-    method: str = "orbit",
-    tolerance: float = 1e-6,
-    allow_extrapolation: bool = False,
-    endurance: bool = False,
-) -> RunResult:
-    one_of(voltage=voltage, frequency=frequency, lift=lift, lift_to_weight=lift_to_weight, power=power)
-    options: dict[str, Any] = {
-        "condition": text("condition", condition),
-        "method": text("method", method),
-        "tolerance": number("tolerance", tolerance, "1"),
-        "frequency": optional_number("frequency", frequency, HELD["frequency"]),
-        "lift": optional_number("lift", lift, HELD["lift"]),
-        "lift_to_weight": optional_number("lift_to_weight", lift_to_weight, HELD["lift_to_weight"]),
-        "power": optional_number("power", power, HELD["power"]),
-        "angle_of_attack": optional_number("angle_of_attack", angle_of_attack, "rad"),
-        "allow_extrapolation": flag("allow_extrapolation", allow_extrapolation),
-        "points": 0,
-        "endurance": flag("endurance", endurance),
-    }
-    if voltage is not None:
-        vehicle = vehicle.replace({"supply.voltage": voltage})
-    found = _core.run(vehicle._design, **options)
-    if any(options[name] is not None for name in (*HELD, "angle_of_attack")):
-        vehicle = type(vehicle)._of(found["design"])
-    return RunResult(found, vehicle, options)
-
-
 class StartUp(WithMetrics):
     """A start-up in time. Metrics of the cycle it settles in are attributes, None where there is none.
 
-    Example
-    -------
-    >>> start = wb.read("data/designs/friction2022.toml").simulate()
+    Examples
+    --------
+    >>> start = wb.read("friction2022").simulate()
     >>> start.status, start.samples.crank_speed.units
     ('flapping', 'rad/s')
     """
@@ -380,26 +281,36 @@ def simulate(
 
     Parameters
     ----------
-    vehicle : a Vehicle
-    condition : "air", "vacuum" or "wingless"
-    tolerance : wanted relative accuracy of the metrics of steady flapping, 1e-11 to 1e-2
-    max_time : gives up after this time [s]; 0: chosen from the vehicle's own time scales
-    crank_angle : at the start [rad]
-    crank_speed : at the start [rad/s]
-    current : at the start [A]
-    record_interval : between samples [s]; 0: every step of the integrator
+    vehicle : Vehicle
+        A Vehicle.
+    condition : str, default 'air'
+        "air", "vacuum" or "wingless".
+    tolerance : float, default 1e-06
+        Wanted relative accuracy of the metrics of steady flapping, 1e-11 to 1e-2.
+    max_time : float or str, default 0.0
+        Gives up after this time [s]; 0: chosen from the vehicle's own time scales.
+    crank_angle : float or str, default 0.0
+        At the start [rad].
+    crank_speed : float or str, default 0.0
+        At the start [rad/s].
+    current : float or str, default 0.0
+        At the start [A].
+    record_interval : float or str, default 0.0
+        Between samples [s]; 0: every step of the integrator.
 
     Returns
     -------
-    A StartUp, whether it ends in flapping or not.
+    StartUp
+        A StartUp, whether it ends in flapping or not.
 
     Raises
     ------
-    InputError : for options that cannot be used
+    InputError
+        For options that cannot be used.
 
-    Example
-    -------
-    >>> start = wb.simulate(wb.read("data/designs/friction2022.toml"), record_interval="1 ms")
+    Examples
+    --------
+    >>> start = wb.simulate(wb.read("friction2022"), record_interval="1 ms")
     >>> start.settled, start.inrush_current > 0.1
     (True, True)
     """

@@ -10,9 +10,9 @@ from ._tables import parameters
 class Section:
     """A section of a vehicle: its keys are attributes, numbers in SI with their units, None where there is no value.
 
-    Example
-    -------
-    >>> motor = wb.read("data/designs/friction2022.toml").motor
+    Examples
+    --------
+    >>> motor = wb.read("friction2022").motor
     >>> motor.torque_constant, motor.gear_efficiency
     (0.01 N m/A, 1.0)
     """

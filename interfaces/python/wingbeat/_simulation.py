@@ -26,9 +26,9 @@ class SimulationState(NamedTuple):
 
     Can be compared, copied and pickled; with a function that commands, where that can be.
 
-    Example
-    -------
-    >>> flight = wb.read("data/designs/friction2022.toml").simulation()
+    Examples
+    --------
+    >>> flight = wb.read("friction2022").simulation()
     >>> events = flight.step("10 ms")
     >>> flight.save().time
     0.01
@@ -49,27 +49,39 @@ class Simulation:
 
     Parameters
     ----------
-    vehicle : a Vehicle, at rest at time 0 unless another state is given
-    voltage : what commands the voltage [V], see the attribute
-    condition : "air", "vacuum" or "wingless"
-    tolerance : admissible relative error of an integration step, 1e-12 to 1e-2
-    angle : of the crank or, of a direct drive, of the stroke at the start [rad]
-    speed : likewise [rad/s]
-    current : at the start [A]
-    pitch_angle : of wings on hinges at the start [rad]
-    pitch_velocity : likewise [rad/s]
+    vehicle : Vehicle
+        A Vehicle, at rest at time 0 unless another state is given.
+    voltage : array_like, optional
+        What commands the voltage [V], see the attribute.
+    condition : str, default 'air'
+        "air", "vacuum" or "wingless".
+    tolerance : float, default 1e-08
+        Admissible relative error of an integration step, 1e-12 to 1e-2.
+    angle : float or str, default 0.0
+        Of the crank or, of a direct drive, of the stroke at the start [rad].
+    speed : float or str, default 0.0
+        Likewise [rad/s].
+    current : float or str, default 0.0
+        At the start [A].
+    pitch_angle : float or str, default 0.0
+        Of wings on hinges at the start [rad].
+    pitch_velocity : float or str, default 0.0
+        Likewise [rad/s].
 
+    Raises
+    ------
+    InputError
+        For options that cannot be used.
+
+    Notes
+    -----
     Sticking, jamming, stops of hinges and the switching of a pwm supply are part of it. The motor is as warm as its
     surroundings. A simulation has one user at a time: another thread, or a commanding function, must not step it
     meanwhile. `copy.copy` makes one that goes its own way; it can be pickled.
 
-    Raises
-    ------
-    InputError : for options that cannot be used
-
-    Example
-    -------
-    >>> flight = wb.Simulation(wb.read("data/designs/friction2022.toml"), voltage="3 V")
+    Examples
+    --------
+    >>> flight = wb.Simulation(wb.read("friction2022"), voltage="3 V")
     >>> events = flight.step_to("0.2 s")
     >>> len(events) > 2, flight.stands
     (True, False)
@@ -174,40 +186,64 @@ class Simulation:
 
         Parameters
         ----------
-        time : where to [s]; not in the past
-        until : stops behind the first event of this kind: "revolution" (the crank angle passes a multiple of 2 pi
-            forwards), "force-sign-change" (of the rod), "standstill", "breakaway", "supply-switch", "stop-impact", "jam"
-
-        It ends early where the mechanism jams. Other Python threads run meanwhile. What a commanding function raises,
-        and Ctrl-C, leave the simulation where the call began.
+        time : float or str
+            Where to [s]; not in the past.
+        until : str, optional
+            Stops behind the first event of this kind: "revolution" (the crank angle passes a multiple of 2 pi
+            forwards), "force-sign-change" (of the rod), "standstill", "breakaway", "supply-switch", "stop-impact",
+            "jam".
 
         Returns
         -------
-        The events on the way, each an Event.
+        list of Event
+            The events on the way, each an Event.
 
         Raises
         ------
-        InputError : for a time in the past, and for a kind of event that there is not
+        InputError
+            For a time in the past, and for a kind of event that there is not.
+
+        Notes
+        -----
+        It ends early where the mechanism jams. Other Python threads run meanwhile. What a commanding function raises,
+        and Ctrl-C, leave the simulation where the call began.
+
+        Examples
+        --------
+        >>> flight = wb.read("friction2022").simulation()
+        >>> [event.kind for event in flight.step_to("0.2 s", until="revolution")][-1]
+        'revolution'
         """
         end = number("time", time, "s")
         kind = None if until is None else text("until", until)
         return [Event(*event) for event in self._simulation.step_to(end, kind)]
 
     def step(self, duration: float | str, *, until: str | None = None) -> list[Event]:
-        """Goes on for a time: see step_to.
+        """Goes on for a time [s] and returns what has happened on the way, as `step_to` does.
 
         Parameters
         ----------
-        duration : for how long [s]; not negative
-        until : as in step_to
+        duration : float or str
+            For how long [s]; not negative.
+        until : str, optional
+            Stops behind the first event of this kind, as of `step_to`.
 
         Returns
         -------
-        The events on the way, each an Event.
+        list of Event
+            The events on the way, each an Event.
 
         Raises
         ------
-        InputError : for a negative duration, and for a kind of event that there is not
+        InputError
+            For a negative duration, and for a kind of event that there is not.
+
+        Examples
+        --------
+        >>> flight = wb.read("friction2022").simulation()
+        >>> events = flight.step("5 ms") + flight.step(0.005)
+        >>> flight.time
+        0.01
         """
         span = number("duration", duration, "s")
         if span < 0.0:
@@ -219,16 +255,26 @@ class Simulation:
 
         Parameters
         ----------
-        times : array [s], which must not fall
+        times : array_like
+            One dimension [s], SI numbers or texts with a unit, which must not fall.
 
         Returns
         -------
-        A data set over `time` with the variables of `RunResult.cycle`, with units and long names, NaN behind a jam; over
-        the dimension `event`: `event`, `event_time` [s] and `event_crank_angle` [rad] of what has happened on the way.
+        xarray.Dataset
+            A data set over `time` with the variables of `RunResult.cycle`, with units and long names, NaN behind a
+            jam; over the dimension `event`: `event`, `event_time` [s] and `event_crank_angle` [rad] of what has
+            happened on the way.
 
         Raises
         ------
-        InputError : for times in the past, or that fall
+        InputError
+            For times in the past, or that fall.
+
+        Examples
+        --------
+        >>> record = wb.read("friction2022").simulation().record(np.linspace(0, 0.1, 11))
+        >>> record.lift.sizes["time"], record.lift.attrs["units"]
+        (11, 'N')
         """
         columns, events = self._simulation.record(array("times", times, "s").ravel().tolist())
         made = _waveform(columns)
@@ -245,7 +291,17 @@ class Simulation:
 
         Returns
         -------
-        A SimulationState.
+        SimulationState
+            What `restore` takes; it can be pickled.
+
+        Examples
+        --------
+        >>> flight = wb.read("friction2022").simulation()
+        >>> kept = flight.save()
+        >>> events = flight.step("10 ms")
+        >>> flight.restore(kept)
+        >>> flight.time
+        0.0
         """
         return SimulationState(self._simulation.save(), self._voltage)
 
@@ -254,12 +310,24 @@ class Simulation:
 
         Parameters
         ----------
-        state : what `save` has returned
+        state : SimulationState
+            What `save` has returned.
 
         Raises
         ------
-        InputError : for a state of another kind of vehicle
-        TypeError : for what is not a state
+        InputError
+            For a state of another kind of vehicle.
+        TypeError
+            For what is not a state.
+
+        Examples
+        --------
+        >>> flight = wb.read("friction2022").simulation()
+        >>> kept = flight.save()
+        >>> events = flight.step("10 ms")
+        >>> flight.restore(kept)
+        >>> flight.time
+        0.0
         """
         if not isinstance(state, SimulationState):
             raise wrong_type("state", "a wingbeat.SimulationState", state)

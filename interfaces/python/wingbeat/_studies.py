@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import pathlib
 import tempfile
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -32,9 +33,9 @@ class StudyResult(Mapping[str, Any]):
 
     `print(result)` is the program's readable report.
 
-    Example
-    -------
-    >>> flight = wb.read("data/designs/friction2022-battery.toml").endurance()
+    Examples
+    --------
+    >>> flight = wb.read("friction2022-battery").endurance()
     >>> flight["status"], len(flight) > 5
     ('flapping', True)
     """
@@ -62,9 +63,9 @@ class StudyResult(Mapping[str, Any]):
 class Flight(StudyResult):
     """A flight to the end of the battery.
 
-    Example
-    -------
-    >>> flight = wb.read("data/designs/friction2022-battery.toml").endurance()
+    Examples
+    --------
+    >>> flight = wb.read("friction2022-battery").endurance()
     >>> flight.trajectory.time.units
     's'
     """
@@ -94,9 +95,9 @@ class Flight(StudyResult):
 class Identification(StudyResult):
     """A motor identified from its data sheet.
 
-    Example
-    -------
-    >>> print(wb.identify_motor("data/motors/0816K003SR.toml").motor.splitlines()[0])
+    Examples
+    --------
+    >>> print(wb.identify_motor("0816K003SR").motor.splitlines()[0])
     # Faulhaber 0816K003SR with a 20:1 gearbox
     """
 
@@ -112,9 +113,9 @@ class Identification(StudyResult):
 class Found(StudyResult):
     """A fit or an optimum.
 
-    Example
-    -------
-    >>> found = wb.fit("data/bench/flapper.toml", profiles=False)
+    Examples
+    --------
+    >>> found = wb.fit("flapper", profiles=False)
     >>> found["converged"], found.vehicle.friction.type
     (True, 'load-proportional')
     """
@@ -130,13 +131,42 @@ class Found(StudyResult):
 Study = str | os.PathLike[str] | Mapping[str, Any]
 
 
+def vehicle_first(name: str) -> Callable[[Callable[..., Any]], Callable[..., Any]]:
+    """For a function of a vehicle and a study, called `name`: it takes the study first and `vehicle=` as well."""
+
+    def made(function: Callable[..., Any]) -> Callable[..., Any]:
+        @functools.wraps(function)
+        def call(*arguments: Any, **options: Any) -> Any:
+            if not arguments and name in options:
+                arguments = (options.pop(name),)
+            if len(arguments) == 1 and "vehicle" in options:
+                vehicle = options.pop("vehicle")
+                arguments = arguments if vehicle is None else (vehicle_of(vehicle), *arguments)
+            return function(*arguments, **options)
+
+        return call
+
+    return made
+
+
+def vehicle_and_study(vehicle: Any, study: Any, name: str = "study") -> tuple[Vehicle | None, Any]:
+    """The vehicle, None where the study names it, and the study."""
+    if not isinstance(vehicle, Vehicle):
+        if study is not None:
+            raise wrong_type("vehicle", "a wingbeat.Vehicle", vehicle)
+        return None, vehicle
+    if study is None:
+        raise TypeError(f"{name}: a vehicle needs a {name} beside it")
+    return vehicle, study
+
+
 def values_of(values: Mapping[str, Any] | None) -> list[str]:
     """Keys of the vehicle with other values, as a study takes them."""
     return [] if values is None else [f"{key}={_core.toml(value)}" for key, value in keys_of(values).items()]
 
 
 @contextmanager
-def _file_of(study: Study, vehicle: Vehicle | None, section: str = "study") -> Iterator[bytes]:
+def file_of(study: Study, vehicle: Vehicle | None, section: str = "study") -> Iterator[bytes]:
     """The study as a file; of a dict, beside its vehicle in a temporary folder. `section` names the vehicle."""
     if not isinstance(study, Mapping):
         if not isinstance(study, (str, bytes, os.PathLike)):
@@ -170,21 +200,26 @@ def endurance(vehicle: Vehicle, *, hover: bool = False, allow_extrapolation: boo
 
     Parameters
     ----------
-    vehicle : a Vehicle on a battery
-    hover : fly at the throttle that just carries the weight, as `supply.throttle = "hover"`
-    allow_extrapolation : flight outside the model's domain may hover
+    vehicle : Vehicle
+        A Vehicle on a battery.
+    hover : bool, default False
+        Fly at the throttle that just carries the weight, as `supply.throttle = "hover"`.
+    allow_extrapolation : bool, default False
+        Flight outside the model's domain may hover.
 
     Returns
     -------
-    A Flight: `flight["hover_s"]` and `flight["endurance_s"]` [s], `flight.trajectory` over time.
+    Flight
+        A Flight: `flight["hover_s"]` and `flight["endurance_s"]` [s], `flight.trajectory` over time.
 
     Raises
     ------
-    InputError : for a vehicle without a battery
+    InputError
+        For a vehicle without a battery.
 
-    Example
-    -------
-    >>> flight = wb.endurance(wb.read("data/designs/friction2022-battery.toml"))
+    Examples
+    --------
+    >>> flight = wb.endurance(wb.read("friction2022-battery"))
     >>> f"{flight['endurance_s']:.0f} s"
     '492 s'
     """
@@ -204,23 +239,30 @@ def identify_motor(
 
     Parameters
     ----------
-    sheet : the path of the data sheet
-    frequency : [Hz], that the user has in mind, for the remark about the inductance
-    assume_steel_cylinder : where the sheet says nothing of the inertia, that of a steel cylinder of the rotor's size
-    assume_typical_damping : where it says nothing of the viscous loss, that of a small coreless motor
-    shaft : "output" or "motor": where the constants of `motor` stand
+    sheet : path
+        The path of the data sheet.
+    frequency : float or str, optional
+        [Hz], that the user has in mind, for the remark about the inductance.
+    assume_steel_cylinder : bool, default False
+        Where the sheet says nothing of the inertia, that of a steel cylinder of the rotor's size.
+    assume_typical_damping : bool, default False
+        Where it says nothing of the viscous loss, that of a small coreless motor.
+    shaft : str, default 'output'
+        "output" or "motor": where the constants of `motor` stand.
 
     Returns
     -------
-    An Identification; a sheet that does not determine the motor is a result as well.
+    Identification
+        An Identification; a sheet that does not determine the motor is a result as well.
 
     Raises
     ------
-    InputError : for a sheet that cannot be read or used
+    InputError
+        For a sheet that cannot be read or used.
 
-    Example
-    -------
-    >>> found = wb.identify_motor("data/motors/0816K003SR.toml")
+    Examples
+    --------
+    >>> found = wb.identify_motor("0816K003SR")
     >>> found["name"], found["complete"], "[motor]" in found.motor
     ('Faulhaber 0816K003SR with a 20:1 gearbox', True, True)
     """
@@ -235,62 +277,33 @@ def identify_motor(
     )
 
 
-def fit(
-    bench: Study,
+@overload
+def tolerance(
+    vehicle: Vehicle,
+    study: Mapping[str, Any],
+    *,
+    values: Mapping[str, Any] | None = None,
+    allow_extrapolation: bool = False,
+    threads: int = 0,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> StudyResult: ...
+@overload
+def tolerance(
+    study: Study,
+    /,
     *,
     vehicle: Vehicle | None = None,
     values: Mapping[str, Any] | None = None,
-    profiles: bool = True,
-    compare_friction: bool = False,
+    allow_extrapolation: bool = False,
     threads: int = 0,
-) -> Found:
-    """A vehicle's parameters from bench measurements, and how sure they are: `wingbeat fit`.
-
-    Parameters
-    ----------
-    bench : bench file (TOML), which names the vehicle file and the logs, or a dict of its tables. There a log may have
-        `data`, a DataFrame, a Dataset or a dict of columns, for its `file`: columns are named as in files, a NaN or NA is
-        left out
-    vehicle : of a bench that is a dict
-    values : keys of the vehicle with other values
-    profiles : False: intervals from the curvature alone, which is faster
-    compare_friction : fits one law of friction after the other as well
-    threads : at most so many; 0: one for each core. What is found does not depend on it
-
-    Other Python threads run meanwhile; Ctrl-C ends it.
-
-    Returns
-    -------
-    A Found: the keys of `wingbeat fit --json`, and the vehicle with the fitted values.
-
-    Raises
-    ------
-    InputError : for a bench file or logs that cannot be used
-
-    Example
-    -------
-    >>> found = wb.fit("data/bench/flapper.toml", profiles=False)
-    >>> f"{1e3 * found.vehicle.friction.radius:.2f} mm"
-    '2.48 mm'
-    >>> air = {"voltage_V": [2, 3, 4], "frequency_Hz": [15.1, 21.9, 27.7], "current_mean_mA": [137, 203, 268]}
-    >>> bench = {
-    ...     "parameter": [{"key": "friction.radius", "lower": 0, "upper": "8 mm"}],
-    ...     "deviation": {"default": {"relative": 0.01}},
-    ...     "log": [{"data": air, "condition": "air"}],
-    ... }
-    >>> found = wb.fit(bench, vehicle=wb.read("data/designs/friction2022.toml"))
-    >>> found["converged"]
-    True
-    """
-    options = flag("profiles", profiles), flag("compare_friction", compare_friction), threads_of(threads)
-    with _file_of(bench, vehicle, "bench") as file:
-        return Found(_core.fit(file, values_of(values), *options))
-
-
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> StudyResult: ...
+@operation
+@vehicle_first("study")
 def tolerance(
-    study: Study,
+    vehicle: Vehicle | Study,
+    study: Mapping[str, Any] | None = None,
     *,
-    vehicle: Vehicle | None = None,
     values: Mapping[str, Any] | None = None,
     allow_extrapolation: bool = False,
     threads: int = 0,
@@ -300,30 +313,41 @@ def tolerance(
 
     Parameters
     ----------
-    study : study file (TOML), or a dict of its tables; a file names its vehicle
-    vehicle : of a study that is a dict
-    values : keys of the vehicle with other values
-    allow_extrapolation : samples outside the model's domain count and may hover
-    threads : at most so many; 0: one for each core
-    progress : True shows a bar (tqdm where it is installed), a function is called with designs done and designs
+    vehicle : Vehicle, path or dict
+        A Vehicle; or the study alone, as the path of a study file (TOML), the name of a shipped one, or a dict of its
+        tables, which names its vehicle.
+    study : dict
+        Of a Vehicle: the tables of a study file, without a vehicle.
+    values : dict, optional
+        Keys of the vehicle with other values: SI numbers, or texts with a unit.
+    allow_extrapolation : bool, default False
+        Samples outside the model's domain count and may hover.
+    threads : int, default 0
+        At most so many; 0: one for each core.
+    progress : bool or function, optional
+        True shows a bar (tqdm where it is installed), a function is called with designs done and designs.
 
     Returns
     -------
-    A StudyResult: the keys of `wingbeat tolerance --json`.
+    StudyResult
+        The keys of `wingbeat tolerance --json`.
 
     Raises
     ------
-    InputError : for a study that cannot be used
+    InputError
+        For a study that cannot be used.
+    TypeError
+        For a Vehicle without a study, and for a Vehicle beside a study file, which names its own.
 
-    Example
-    -------
+    Examples
+    --------
     >>> spread = {"key": "friction.radius", "distribution": "normal", "relative_deviation": 0.05}
     >>> study = {"samples": {"count": 128}, "parameter": [spread]}
-    >>> found = wb.tolerance(study, vehicle=wb.read("data/designs/friction2022.toml"))
+    >>> found = wb.tolerance(wb.read("friction2022"), study)
     >>> found["method"], [parameter["key"] for parameter in found["parameters"]]
     ('sobol', ['friction.radius'])
     """
+    base, tables = vehicle_and_study(vehicle, study)
     overrides, extrapolate = values_of(values), flag("allow_extrapolation", allow_extrapolation)
-    with _file_of(study, vehicle) as file, shown(callback(progress), 0) as tell:
+    with file_of(tables, base) as file, shown(callback(progress), 0) as tell:
         return StudyResult(_core.tolerance(file, overrides, extrapolate, threads_of(threads), tell))
-

@@ -49,37 +49,56 @@ def sweep(
 
     Parameters
     ----------
-    vehicle : a Vehicle
-    axes : keys of the vehicle, "frequency", "lift", "lift_to_weight", "power", "condition" or "springs", each with its
-        values: SI numbers, texts with units, names; the last varies fastest
-    output : a file (.nc) that keeps the data set, as `wingbeat sweep -o` writes it: interrupted, the same call goes on
+    vehicle : Vehicle
+        A Vehicle.
+    axes : dict
+        Keys of the vehicle, "frequency", "lift", "lift_to_weight", "power", "condition" or "springs", each with its
+        values: SI numbers, texts with units, names; the last varies fastest.
+    output : path, optional
+        A file (.nc) that keeps the data set, as `wingbeat sweep -o` writes it: interrupted, the same call goes on
         from what is there. Without it nothing is left on the disk.
-    frequency : [Hz], held by all designs: the voltage is found for each
-    lift : [N], the same for the mean lift: the lowest voltage that yields it
-    lift_to_weight : the same for the lift over the weight; 1: hover
-    power : [W], the same for the mean electrical power
-    allow_extrapolation : a search for a lift may leave the model's domain
-    tolerance : wanted relative accuracy of every metric, 1e-12 to 1e-2
-    metrics : those wanted; default: all that the vehicle has but hover and endurance
-    title : of the data set
-    threads : at most so many; 0: one for each core
-    force : replaces a file that is not of this sweep
-    progress : True shows a bar (tqdm where it is installed), a function is called with designs done and designs
-
-    Other Python threads run meanwhile; Ctrl-C ends it.
+    frequency : float or str, optional
+        [Hz], held by all designs: the voltage is found for each.
+    lift : float or str, optional
+        [N], the same for the mean lift: the lowest voltage that yields it.
+    lift_to_weight : float, optional
+        The same for the lift over the weight; 1: hover.
+    power : float or str, optional
+        [W], the same for the mean electrical power.
+    allow_extrapolation : bool, default False
+        A search for a lift may leave the model's domain.
+    tolerance : float, default 1e-06
+        Wanted relative accuracy of every metric, 1e-12 to 1e-2.
+    metrics : list of str, optional
+        Those wanted; default: all that the vehicle has but hover and endurance.
+    title : str, default ''
+        Of the data set.
+    threads : int, default 0
+        At most so many; 0: one for each core.
+    force : bool, default False
+        Replaces a file that is not of this sweep.
+    progress : bool or function, optional
+        True shows a bar (tqdm where it is installed), a function is called with designs done and designs.
 
     Returns
     -------
-    The data set that `wingbeat sweep` writes, loaded. Its variables have the names of data sets, `data["lift_mean_n"]`,
-    and `data["status"]` is a number; as attributes they are as here: `data.lift_mean`, `data.status == "flapping"`.
+    SweepData
+        The data set that `wingbeat sweep` writes, loaded: an xarray.Dataset with a dimension for each key. Metrics are
+        `data.lift_mean`, the variable `lift_mean_n` of the file; the status of each design is a text,
+        `data.status == "flapping"`.
 
     Raises
     ------
-    InputError : for axes and options that cannot be used, and for a file that is not of this sweep
+    InputError
+        For axes and options that cannot be used, and for a file that is not of this sweep.
 
-    Example
-    -------
-    >>> vehicle = wb.read("data/designs/friction2022.toml")
+    Notes
+    -----
+    Other Python threads run meanwhile; Ctrl-C ends it.
+
+    Examples
+    --------
+    >>> vehicle = wb.read("friction2022")
     >>> data = wb.sweep(vehicle, {"supply.voltage": [3, 4], "transmission.crank_radius": ["5 mm", "6 mm"]})
     >>> data.lift_mean.dims
     ('supply_voltage', 'transmission_crank_radius')
@@ -87,7 +106,7 @@ def sweep(
     True
     """
     design, threads, replaces = vehicle_of(vehicle)._design, threads_of(threads), flag("force", force)
-    values = {key: axis_values(key, along, _is_number(key)) for key, along in mapping("axes", axes).items()}
+    values = {key: axis_values(key, along, _unit(key)) for key, along in mapping("axes", axes).items()}
     hold = held_by(frequency=frequency, lift=lift, lift_to_weight=lift_to_weight, power=power)
     for name in hold:
         if name in values:
@@ -112,8 +131,8 @@ def sweep(
             return open_dataset(file)
 
 
-def _is_number(key: str) -> bool:
-    return key in HELD or (key in parameters and bool(parameters[key].unit))
+def _unit(key: str) -> str:
+    return HELD.get(key) or (parameters[key].unit if key in parameters else "")
 
 
 def open_dataset(file: str | os.PathLike[str]) -> SweepData:
@@ -121,20 +140,23 @@ def open_dataset(file: str | os.PathLike[str]) -> SweepData:
 
     Parameters
     ----------
-    file : the path of the file (.nc)
+    file : path
+        The path of the file (.nc).
 
     Returns
     -------
-    The data set.
+    SweepData
+        The data set.
 
     Raises
     ------
-    FileNotFoundError : where there is no such file
+    FileNotFoundError
+        Where there is no such file.
 
-    Example
-    -------
+    Examples
+    --------
     >>> import os, tempfile
-    >>> vehicle = wb.read("data/designs/friction2022.toml")
+    >>> vehicle = wb.read("friction2022")
     >>> with tempfile.TemporaryDirectory() as folder:
     ...     file = os.path.join(folder, "sweep.nc")
     ...     data = vehicle.sweep({"supply.voltage": [3, 4]}, output=file)
@@ -146,4 +168,4 @@ def open_dataset(file: str | os.PathLike[str]) -> SweepData:
     from ._accessor import SweepData
 
     with xarray.open_dataset(os.fsdecode(path("file", file)), decode_timedelta=False) as data:
-        return SweepData.of(data.load())
+        return SweepData._of(data.load())

@@ -11,8 +11,8 @@ from ._errors import InputError
 class Parameter(NamedTuple):
     """A key of the vehicle file.
 
-    Example
-    -------
+    Examples
+    --------
     >>> wb.parameters["motor.inertia"].unit
     'kg m2'
     """
@@ -47,8 +47,8 @@ class Parameter(NamedTuple):
 class Metric(NamedTuple):
     """A metric of a flapping cycle, or a column of its waveform.
 
-    Example
-    -------
+    Examples
+    --------
     >>> wb.metrics["lift_mean"].key, wb.metrics["lift_mean"].unit
     ('lift_mean_n', 'N')
     """

@@ -3,30 +3,20 @@
 from __future__ import annotations
 
 import os
+import pathlib
 import re
 import tomllib
 from collections.abc import Iterator, Mapping
-from typing import IO, TYPE_CHECKING, Any
+from typing import IO, Any
 
 import numpy as np
 
 from . import _core
 from ._arguments import array, mapping, number, path, real, refused, text, wrong_type
-from ._operations import operations
+from ._methods import VehicleMethods
 from ._quantity import Quantity
 from ._sections import Sections, sections
 from ._tables import parameters
-
-if TYPE_CHECKING:
-    from xarray import Dataset
-
-    from ._accessor import SweepData
-    from ._ensemble import Ensemble
-    from ._equations import EquationsOfMotion
-    from ._linear import ControlModels
-    from ._result import RunResult, StartUp
-    from ._simulation import Simulation
-    from ._studies import Flight
 
 
 def plain(value: Any, key: str = "value") -> Any:
@@ -62,6 +52,8 @@ def keys_of(values: Mapping[str, Any]) -> dict[str, Any]:
             raise refused(ascii(key), "unknown key")
         if key in made:
             raise refused(key, "is given twice")
+        if isinstance(value, Quantity) and key in parameters and value.unit not in ("1", parameters[key].unit):
+            value = f"{float(value)!r} {value.unit}"
         made[key] = plain(value, key)
 
     for key, value in mapping("values", values).items():
@@ -73,7 +65,7 @@ def keys_of(values: Mapping[str, Any]) -> dict[str, Any]:
     return made
 
 
-class Vehicle(Sections):
+class Vehicle(VehicleMethods, Sections):
     """A vehicle, by the keys of vehicle files: `Vehicle({"motor": {"inertia": "1.5e-7 kg m2", ...}, ...})`.
 
     Values are SI numbers or texts with a unit ("5 mm"); sections may be nested tables or dotted keys. Keys are
@@ -83,16 +75,19 @@ class Vehicle(Sections):
 
     Parameters
     ----------
-    values : the keys with their values, nested by section or with dots
+    values : dict
+        The keys with their values, nested by section or with dots.
 
     Raises
     ------
-    InputError : for keys and values that cannot be used, with all that is wrong
-    TypeError : where `values` is not a dict
+    InputError
+        For keys and values that cannot be used, with all that is wrong.
+    TypeError
+        Where `values` is not a dict.
 
-    Example
-    -------
-    >>> vehicle = wb.read("data/designs/friction2022.toml")
+    Examples
+    --------
+    >>> vehicle = wb.read("friction2022")
     >>> vehicle.motor.inertia, vehicle["transmission.crank_radius"]
     (1.5e-07 kg m2, 0.005 m)
     >>> other = wb.Vehicle(vehicle.to_dict() | {"vehicle": {"name": "copy", "mass": "3.34 g"}})
@@ -125,24 +120,62 @@ class Vehicle(Sections):
 
         Parameters
         ----------
-        toml : the text
-        name : what messages call it
+        toml : str
+            The text.
+        name : str, default 'vehicle'
+            What messages call it.
+
+        Returns
+        -------
+        Vehicle
+            Its values are SI, with their units.
 
         Raises
         ------
-        InputError : with line and column of all that is wrong
+        InputError
+            With line and column of all that is wrong.
+
+        Examples
+        --------
+        >>> with open("data/designs/friction2022.toml") as file:
+        ...     vehicle = wb.Vehicle.from_toml(file.read())
+        >>> vehicle.wing.count
+        2.0
         """
         return cls._of(_core.parse(text("toml", toml), text("name", name)))
 
     def to_toml(self) -> str:
-        """The vehicle file, complete in itself, that reads back to the equal vehicle."""
+        """The vehicle file, complete in itself, that reads back to the equal vehicle.
+
+        Returns
+        -------
+        str
+            The text, in TOML, with a unit beside each number.
+
+        Examples
+        --------
+        >>> vehicle = wb.read("friction2022")
+        >>> wb.Vehicle.from_toml(vehicle.to_toml()) == vehicle
+        True
+        """
         if self._toml is None:
             object.__setattr__(self, "_toml", self._design.to_toml())
         assert self._toml is not None
         return self._toml
 
     def to_dict(self) -> dict[str, Any]:
-        """The sections as nested dicts, with numbers as texts with units: what `Vehicle` takes."""
+        """The sections as nested dicts, with numbers as texts with units: what `Vehicle` takes.
+
+        Returns
+        -------
+        dict
+            A dict for each section.
+
+        Examples
+        --------
+        >>> wb.read("friction2022").to_dict()["supply"]
+        {'type': 'constant', 'voltage': '3 V'}
+        """
         return tomllib.loads(self.to_toml())
 
     def replace(self, values: Mapping[str, Any]) -> Vehicle:
@@ -150,15 +183,22 @@ class Vehicle(Sections):
 
         Parameters
         ----------
-        values : the keys with their values, nested by section or with dots
+        values : dict
+            The keys with their values, nested by section or with dots: SI numbers, or texts with a unit.
+
+        Returns
+        -------
+        Vehicle
+            Another one; this one does not change.
 
         Raises
         ------
-        InputError : for keys and values that cannot be used
+        InputError
+            For keys and values that cannot be used, with all that is wrong.
 
-        Example
-        -------
-        >>> vehicle = wb.read("data/designs/friction2022.toml")
+        Examples
+        --------
+        >>> vehicle = wb.read("friction2022")
         >>> vehicle.replace({"transmission.crank_radius": "6 mm"}).transmission.crank_radius
         0.006 m
         """
@@ -189,7 +229,18 @@ class Vehicle(Sections):
         return found
 
     def keys(self) -> list[str]:
-        """The keys that `to_toml` states; alternatives to them have values, too."""
+        """The keys that `to_toml` states; alternatives to them have values, too.
+
+        Returns
+        -------
+        list of str
+            With their sections: "motor.inertia".
+
+        Examples
+        --------
+        >>> "supply.voltage" in wb.read("friction2022").keys()
+        True
+        """
         made: list[str] = []
 
         def enter(table: Mapping[str, Any], start: str) -> None:
@@ -233,16 +284,29 @@ class Vehicle(Sections):
     def __repr__(self) -> str:
         return f"<wingbeat.Vehicle {self.name!r}>"
 
-    def drawing(self, stroke_amplitude: float = 1.0) -> str:
+    def drawing(self, stroke_amplitude: float | str = 1.0) -> str:
         """Its mechanism as SVG, to be shown in a page; "" where gnuplot, which draws it, is not installed.
 
         Parameters
         ----------
-        stroke_amplitude : of a direct drive [rad]; a crank has its own
+        stroke_amplitude : float or str, default 1.0
+            Of a direct drive [rad]; a crank has its own.
+
+        Returns
+        -------
+        str
+            The SVG.
 
         Raises
         ------
-        InputError : for an angle that is not finite
+        InputError
+            For an angle that is not finite.
+
+        Examples
+        --------
+        >>> drawing = wb.read("friction2022").drawing()
+        >>> drawing.startswith("<svg") or drawing == ""
+        True
         """
         svg = _core.mechanism_svg(self._design, number("stroke_amplitude", stroke_amplitude, "rad"))
         return svg[max(0, svg.find("<svg")) :]
@@ -267,52 +331,6 @@ class Vehicle(Sections):
         shown = f"<div style='max-width: 28em'>{drawing}</div>" if drawing else ""
         return f"<p><b>{escape(self.name or 'vehicle')}</b></p>{shown}<table>{rows}</table>"
 
-    # ---- what it does
-
-    def solve(self, **options: Any) -> RunResult:
-        """Its steady flapping: see wingbeat.solve."""
-        return operations["solve"](self, **options)  # type: ignore[no-any-return]
-
-    def simulate(self, **options: Any) -> StartUp:
-        """Its start-up in time: see wingbeat.simulate."""
-        return operations["simulate"](self, **options)  # type: ignore[no-any-return]
-
-    def simulation(self, **options: Any) -> Simulation:
-        """A simulation in time, stepped under commanded voltages: see wingbeat.Simulation."""
-        return operations["Simulation"](self, **options)  # type: ignore[no-any-return]
-
-    def solve_columns(self, columns: Mapping[str, Any], **options: Any) -> Ensemble:
-        """Very many vehicles like it: see wingbeat.solve_columns."""
-        return operations["solve_columns"](columns, vehicle=self, **options)  # type: ignore[no-any-return]
-
-    def sweep(self, axes: Mapping[str, Any], **options: Any) -> SweepData:
-        """All combinations of the values of these keys: see wingbeat.sweep."""
-        return operations["sweep"](self, axes, **options)  # type: ignore[no-any-return]
-
-    def endurance(self, **options: Any) -> Flight:
-        """How long it hovers and flaps on its battery: see wingbeat.endurance."""
-        return operations["endurance"](self, **options)  # type: ignore[no-any-return]
-
-    def linearise(self, **options: Any) -> ControlModels:
-        """Linear models for control design: see wingbeat.linearise."""
-        return operations["linearise"](self, **options)  # type: ignore[no-any-return]
-
-    def motor_curves(self, **options: Any) -> Dataset:
-        """Torque, current, powers and efficiency of its motors over speed: see wingbeat.motor_curves."""
-        return operations["motor_curves"](self, **options)  # type: ignore[no-any-return]
-
-    def coefficient_curves(self, **options: Any) -> Dataset:
-        """Force coefficients of its wings over the angle of attack: see wingbeat.coefficient_curves."""
-        return operations["coefficient_curves"](self, **options)  # type: ignore[no-any-return]
-
-    def kinematics(self, **options: Any) -> Dataset:
-        """Stroke angle and its derivatives over the crank angle: see wingbeat.kinematics."""
-        return operations["kinematics"](self, **options)  # type: ignore[no-any-return]
-
-    def equations_of_motion(self, **options: Any) -> EquationsOfMotion:
-        """For integrators of one's own: see wingbeat.EquationsOfMotion."""
-        return operations["EquationsOfMotion"](self, **options)  # type: ignore[no-any-return]
-
 
 def vehicle_of(value: Any, name: str = "vehicle") -> Vehicle:
     """A Vehicle."""
@@ -326,23 +344,34 @@ def _restored(toml: str) -> Vehicle:
 
 
 def read(file: str | os.PathLike[str] | IO[str]) -> Vehicle:
-    """The vehicle in a vehicle file (TOML): a path, or a file open for reading text.
+    """The vehicle in a vehicle file (TOML), by its path, by the name of one that comes with the package, or open.
 
     CSV files that it names are sought beside it; in an open file, tables stand in place.
 
     Parameters
     ----------
-    file : the path of the file, or the file open for reading text
+    file : path or text file
+        The path of the file, with or without ".toml"; the name of a shipped vehicle (`wingbeat.shipped`), unless there
+        is a file of that name; or a file open for reading text.
+
+    Returns
+    -------
+    Vehicle
+        Its values are SI, with their units.
 
     Raises
     ------
-    InputError : with file, line and column of all that is wrong
-    TypeError : for what is neither a path nor an open file
+    InputError
+        With file, line and column of all that is wrong; for a name that is neither a file nor a shipped vehicle.
+    TypeError
+        For what is neither a path nor an open file.
 
-    Example
-    -------
-    >>> wb.read("data/designs/friction2022.toml").supply.voltage
+    Examples
+    --------
+    >>> wb.read("friction2022").supply.voltage
     3.0 V
+    >>> wb.read("data/designs/friction2022.toml") == wb.read("friction2022")
+    True
     """
     if isinstance(file, (str, bytes, os.PathLike)):
         return Vehicle._of(_core.read(path("file", file)))
@@ -351,3 +380,36 @@ def read(file: str | os.PathLike[str] | IO[str]) -> Vehicle:
         raise wrong_type("file", "a path or a file open for reading text", file)
     name = getattr(file, "name", None)
     return Vehicle.from_toml(toml, name if isinstance(name, str) else "vehicle")
+
+
+def shipped(kind: str = "vehicle") -> list[str]:
+    """The names of files that come with the package: what `read` and the studies find without a path.
+
+    Parameters
+    ----------
+    kind : str, default 'vehicle'
+        "vehicle" (for `read`), "study" (for `optimise` and `tolerance`), "bench" (for `fit`) or "datasheet" (for
+        `identify_motor`).
+
+    Returns
+    -------
+    list of str
+        The names, sorted.
+
+    Raises
+    ------
+    InputError
+        For another kind of file.
+
+    Examples
+    --------
+    >>> "friction2022" in wb.shipped(), wb.shipped("bench")[0]
+    (True, 'flapper')
+    """
+    return _core.shipped_names(text("kind", kind))
+
+
+#: Installed with the package; a link in a build folder.
+_DATA = pathlib.Path(__file__).with_name("data")
+if (_DATA / "designs").is_dir():
+    _core.set_shipped_data(os.fsencode(_DATA))

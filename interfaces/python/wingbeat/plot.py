@@ -2,14 +2,15 @@
 
     import wingbeat.plot
     figure = wingbeat.plot.cycle(vehicle.solve())       # a matplotlib Figure
-    ax = wingbeat.plot.power_flow(result, width=183)     # Axes of a new figure 183 mm wide
+    ax = wingbeat.plot.power_flow(result, width="183 mm")  # Axes of a new figure
     wingbeat.plot.lines(data, "lift_mean", ax=ax)       # or into Axes that are there
 
 Functions of one panel take Axes as `ax` and return them; functions of several panels take a Figure or SubFigure as
-`figure` and return it. Without one they make a figure of `width` mm with matplotlib.pyplot; none calls `plt.show()`.
+`figure` and return it. Without one they make a figure of `width` ("89 mm") with matplotlib.pyplot; none calls
+`plt.show()`.
 The style, also for figures of your own, is the file `style`: `plt.style.use(wingbeat.plot.style)`. `colours` are the
 colours of the program's figures by their meaning (`colours["copper"]`), `ordered` those of an ordered quantity,
-`single_column` and `double_column` the widths of 89 and 183 mm.
+`single_column` and `double_column` widths of 89 and 183 mm, as SI numbers with their unit.
 
 matplotlib is needed by this module alone, and `import wingbeat` does not import it.
 """
@@ -21,6 +22,7 @@ from ._figures_control import bode, step
 from ._figures_run import cycle, flight, power_flow, start_up
 from ._figures_studies import front, residuals, sensitivity, tolerance
 from ._figures_sweep import contours, lines, trends
+from ._quantity import Quantity
 
 __all__ = [
     "bode", "colours", "contours", "cycle", "double_column", "flight", "front", "lines", "ordered", "power_flow",
@@ -33,6 +35,6 @@ style: str = STYLE
 colours: Mapping[str, str] = COLOURS
 #: Colours of an ordered quantity, small to large.
 ordered: tuple[str, ...] = ORDERED
-#: Widths of a figure [mm]: 89 and 183.
-single_column: float = SINGLE_COLUMN
-double_column: float = DOUBLE_COLUMN
+#: Widths of a figure: 89 and 183 mm [m].
+single_column: Quantity = SINGLE_COLUMN
+double_column: Quantity = DOUBLE_COLUMN

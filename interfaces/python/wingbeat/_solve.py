@@ -1,0 +1,200 @@
+"""Steady flapping: of one vehicle, or of a design for each row of columns."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from typing import Any, overload
+
+from . import _core
+from ._arguments import HELD, flag, number, one_of, optional_number, text, wrong_type
+from ._ensemble import Ensemble, is_columns, solve_columns
+from ._operations import operation
+from ._result import RunResult
+from ._vehicle import Vehicle
+
+
+@overload
+def solve(
+    design: Vehicle,
+    /,
+    *,
+    voltage: float | str | None = None,
+    frequency: float | str | None = None,
+    lift: float | str | None = None,
+    lift_to_weight: float | None = None,
+    power: float | str | None = None,
+    angle_of_attack: float | str | None = None,
+    condition: str = "air",
+    method: str = "orbit",
+    tolerance: float = 1e-6,
+    allow_extrapolation: bool = False,
+    endurance: bool = False,
+) -> RunResult: ...
+@overload
+def solve(
+    design: Mapping[str, Any],
+    /,
+    *,
+    vehicle: Vehicle | None = None,
+    frequency: float | str | None = None,
+    lift: float | str | None = None,
+    lift_to_weight: float | None = None,
+    power: float | str | None = None,
+    condition: str = "air",
+    tolerance: float = 1e-6,
+    allow_extrapolation: bool = False,
+    metrics: Iterable[str] | None = None,
+    threads: int = 0,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> Ensemble: ...
+@operation
+def solve(
+    design: Vehicle | Mapping[str, Any],
+    /,
+    *,
+    vehicle: Vehicle | None = None,
+    voltage: float | str | None = None,
+    frequency: float | str | None = None,
+    lift: float | str | None = None,
+    lift_to_weight: float | None = None,
+    power: float | str | None = None,
+    angle_of_attack: float | str | None = None,
+    condition: str = "air",
+    method: str = "orbit",
+    tolerance: float = 1e-6,
+    allow_extrapolation: bool = False,
+    endurance: bool = False,
+    metrics: Iterable[str] | None = None,
+    threads: int = 0,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> RunResult | Ensemble:
+    """What a vehicle does from rest: its steady flapping with all metrics, or the status with the evidence.
+
+    Parameters
+    ----------
+    design : Vehicle or dict
+        A Vehicle; or a dict or DataFrame of columns with a design in each row: see `wingbeat.solve_columns`.
+    vehicle : Vehicle, optional
+        Of columns: what the keys are that no column states.
+    voltage : float or str, optional
+        Of one vehicle: the supply's [V], in place of the vehicle's own.
+    frequency : float or str, optional
+        [Hz], in place of a voltage: the voltage is found that yields it (a direct drive's supply has it).
+    lift : float or str, optional
+        [N], in place of either: the voltage (pwm: the duty) is found that yields this mean lift.
+    lift_to_weight : float, optional
+        The same for the lift over the weight [1]; 1: hover.
+    power : float or str, optional
+        [W], the same for the mean electrical power.
+    angle_of_attack : float or str, optional
+        Of one vehicle: at mid-stroke [rad]; the aerodynamics.pitch_coefficient is found that leads to it.
+    condition : str, default 'air'
+        "air", "vacuum" or "wingless".
+    method : str, default 'orbit'
+        Of one vehicle: "orbit", or "transient", simulated from rest.
+    tolerance : float, default 1e-06
+        Wanted relative accuracy of every metric, 1e-12 to 1e-2.
+    allow_extrapolation : bool, default False
+        A search for a frequency, a lift or a power may leave the model's domain.
+    endurance : bool, default False
+        Of one vehicle on a battery: how long it hovers and how long it flaps, too, which costs a flight.
+    metrics : list of str, optional
+        Of columns: the metrics wanted, fewer cost less.
+    threads : int, default 0
+        Of columns: at most so many threads; 0: one for each core.
+    progress : bool or function, optional
+        Of columns: True shows a bar, a function is called with designs done and designs.
+
+    Returns
+    -------
+    RunResult or Ensemble
+        A RunResult, whether it flaps or not; of columns an Ensemble.
+
+    Raises
+    ------
+    InputError
+        For options that cannot be used, and for more than one of voltage, frequency, lift, lift_to_weight and power.
+    TypeError
+        For what is neither a vehicle nor columns, and for an option of the one given with the other.
+
+    Examples
+    --------
+    >>> vehicle = wb.read("friction2022")
+    >>> result = wb.solve(vehicle, frequency="22 Hz")
+    >>> f"{result.frequency:.2f} Hz at {result.vehicle.supply.voltage:.3f} V"
+    '22.00 Hz at 3.008 V'
+    >>> vehicle.solve(voltage=0).status
+    'stalled'
+    >>> wb.solve({"supply.voltage": [3, 4]}, vehicle=vehicle).status
+    array(['flapping', 'flapping'], dtype='<U9')
+    """
+    if isinstance(design, Vehicle):
+        _refuse_options_of("columns", "a vehicle", vehicle=vehicle, metrics=metrics, threads=threads, progress=progress)
+        return _solve(
+            design, voltage, frequency, lift, lift_to_weight, power, angle_of_attack, condition, method, tolerance,
+            allow_extrapolation, endurance,
+        )
+    if not is_columns(design):
+        raise wrong_type("design", "a wingbeat.Vehicle, or a dict or DataFrame of columns", design)
+    other = None if method == "orbit" else method
+    _refuse_options_of(
+        "a vehicle", "columns", voltage=voltage, angle_of_attack=angle_of_attack, method=other, endurance=endurance
+    )
+    return solve_columns(
+        design,
+        vehicle=vehicle,
+        frequency=frequency,
+        lift=lift,
+        lift_to_weight=lift_to_weight,
+        power=power,
+        allow_extrapolation=allow_extrapolation,
+        condition=condition,
+        tolerance=tolerance,
+        metrics=metrics,
+        threads=threads,
+        progress=progress,
+    )
+
+
+def _refuse_options_of(owner: str, given: str, **options: Any) -> None:
+    """Refuses options that are given but have no meaning here."""
+    for name, value in options.items():
+        if value is not None and value is not False and not (name == "threads" and value == 0):
+            hint = "; give the column supply.voltage" if name == "voltage" else ""
+            raise TypeError(f"{name}: is an option for {owner}, not for {given}{hint}")
+
+
+def _solve(
+    vehicle: Vehicle,
+    voltage: float | str | None,
+    frequency: float | str | None,
+    lift: float | str | None,
+    lift_to_weight: float | None,
+    power: float | str | None,
+    angle_of_attack: float | str | None,
+    condition: str,
+    method: str,
+    tolerance: float,
+    allow_extrapolation: bool,
+    endurance: bool,
+) -> RunResult:
+    one_of(voltage=voltage, frequency=frequency, lift=lift, lift_to_weight=lift_to_weight, power=power)
+    options: dict[str, Any] = {
+        "condition": text("condition", condition),
+        "method": text("method", method),
+        "tolerance": number("tolerance", tolerance, "1"),
+        "frequency": optional_number("frequency", frequency, HELD["frequency"]),
+        "lift": optional_number("lift", lift, HELD["lift"]),
+        "lift_to_weight": optional_number("lift_to_weight", lift_to_weight, HELD["lift_to_weight"]),
+        "power": optional_number("power", power, HELD["power"]),
+        "angle_of_attack": optional_number("angle_of_attack", angle_of_attack, "rad"),
+        "allow_extrapolation": flag("allow_extrapolation", allow_extrapolation),
+        "points": 0,
+        "endurance": flag("endurance", endurance),
+    }
+    if voltage is not None:
+        vehicle = vehicle.replace({"supply.voltage": voltage})
+    found = _core.run(vehicle._design, **options)
+    if any(options[name] is not None for name in (*HELD, "angle_of_attack")):
+        vehicle = type(vehicle)._of(found["design"])
+    return RunResult(found, vehicle, options)
