@@ -1,0 +1,57 @@
+"""Notebooks are kept with their outputs; scripts/run-notebooks, which compares them, sees what has changed."""
+
+import importlib.machinery
+import importlib.util
+import unittest
+
+from shared import ROOT
+
+INSTALLED = all(importlib.util.find_spec(name) for name in ("nbformat", "nbconvert"))
+
+
+@unittest.skipUnless(INSTALLED, "nbconvert is not installed")
+class Notebooks(unittest.TestCase):
+    def setUp(self):
+        import nbformat
+
+        loader = importlib.machinery.SourceFileLoader("run_notebooks", str(ROOT / "scripts/run-notebooks"))
+        spec = importlib.util.spec_from_loader("run_notebooks", loader)
+        self.script = importlib.util.module_from_spec(spec)
+        loader.exec_module(self.script)
+        self.output = nbformat.v4.new_output
+        self.books = {path.stem: nbformat.read(path, 4) for path in (ROOT / "examples/notebooks").glob("*.ipynb")}
+
+    def printed(self, text):
+        return [self.output("stream", text=text)]
+
+    def test_they_are_kept_with_outputs(self):
+        self.assertGreaterEqual(len(self.books), 6)
+        for name, book in self.books.items():
+            code = [cell for cell in book.cells if cell.cell_type == "code"]
+            with self.subTest(name):
+                self.assertEqual([cell.execution_count for cell in code], list(range(1, len(code) + 1)))
+                self.assertGreaterEqual(sum(bool(cell.outputs) for cell in code), len(code) - 2)
+                drawings = [kind for cell in code for output in cell.outputs for kind in output.get("data", {})]
+                self.assertIn("image/svg+xml", drawings)
+                self.assertFalse([1 for cell in code for output in cell.outputs if output.output_type == "error"])
+
+    def test_what_has_changed_is_seen(self):
+        differing = self.script.differing
+        for old, new in (("lift 8.74 mN", "lift 8.90 mN"), ("flapping", "stalled"), ("a\nb", "a"), ("1e-3", "-1e-3"),
+                         ("3 designs", "3 vehicles"), ("2 of 3", "2 of 4"), ("1 2", "1 2 3")):
+            self.assertIn(repr(old.split("\n")[0]) if "\n" not in old else "lines",
+                          differing(self.printed(old), self.printed(new)) or "")
+        drawing = [self.output("display_data", data={"image/svg+xml": "<svg/>", "text/plain": "<Figure>"})]
+        self.assertTrue(differing(drawing, [self.output("display_data", data={"text/plain": "<Figure>"})]))
+        self.assertTrue(differing(drawing, []))
+
+    def test_what_has_not_changed_is_not(self):
+        differing = self.script.differing
+        for old, new in (("lift 8.740 mN", "lift 8.741 mN"), ("error 3.1e-11", "error -8e-12"), ("a  b", "a b")):
+            self.assertIsNone(differing(self.printed(old), self.printed(new)))
+        one, other = ([self.output("display_data", data={"image/svg+xml": f"<svg>{n}</svg>"})] for n in (1, 2))
+        self.assertIsNone(differing(one, other))
+
+
+if __name__ == "__main__":
+    unittest.main()
