@@ -177,9 +177,24 @@ class PythonReference(Folder):
         sweep = text.split("\n## sweep\n")[1].split("\n## ")[0]
         self.assertIn("wingbeat.sweep(\n    vehicle: Vehicle,\n    axes: Mapping[str, Any],\n    *,\n", sweep)
         self.assertIn("\n) -> SweepData\n", sweep)
-        self.assertIn(r"| `frequency` | `float \| str \| None` | `None` | \[Hz\], held by all designs", sweep)
+        self.assertIn(r"| `frequency` | `float \| str \| None` | `None` | Flapping frequency of all designs \[Hz\]", sweep)
         self.assertRegex(sweep, r"\n\| `InputError` \| For axes")
         self.assertIn("```pycon\n>>> vehicle = wb.read(", sweep)
+
+    def test_methods_of_a_vehicle_show_what_the_functions_say(self):
+        pages = self.pages()
+        text = pages["python-reference/vehicles.md"]
+        parts = {part.split("\n")[0]: part for part in text.split("\n### Vehicle.")[1:]}
+        for name, row in (("solve", "`frequency`"), ("sweep", "`axes`"), ("fit", "`deviation`"), ("simulation", "`angle`"),
+                          (r"solve\_columns", "`columns`")):
+            part = parts[name]
+            self.assertIn(f"\n| {row} | `", part)
+            self.assertRegex(part, r"\n\*\*Returns\*\* \[`\w+`\]")
+            self.assertIn("\n| `InputError` | For ", part)
+            self.assertIn("```pycon\n>>> ", part)
+            self.assertNotIn("| `vehicle` |", part)
+        self.assertNotIn("`metrics`", parts["solve"])
+        self.assertIn("\n## SweepData\n", pages["python-reference/ensembles.md"])
 
     def test_links_within_lead_somewhere(self):
         pages = self.pages()

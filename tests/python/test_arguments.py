@@ -113,6 +113,28 @@ class Types(Refusals):
             with self.subTest(text):
                 self.refused(act, text)
 
+    def test_a_single_text_is_an_array_of_one(self):
+        vehicle = reference()
+        np.testing.assert_allclose(vehicle.motor_curves(speed="600 rpm").speed, [20 * np.pi])
+        np.testing.assert_allclose(vehicle.kinematics(crank_angle="90 deg").crank_angle, [np.pi / 2])
+        np.testing.assert_allclose(vehicle.coefficient_curves(angle_of_attack="45 deg").angle_of_attack, [np.pi / 4])
+        np.testing.assert_allclose(vehicle.simulation().record("10 ms").time, [0.01])
+        self.refused(lambda: vehicle.motor_curves(speed="3 V"), 'speed: expected .* got "3 V"')
+
+    def test_messages_of_python_name_the_vehicle(self):
+        vehicle = reference()
+        for act in (lambda: vehicle.solve(3), lambda: vehicle.sweep(), lambda: vehicle.fit()):
+            with self.assertRaisesRegex(TypeError, r"^Vehicle\.\w+\(\) (takes|missing)"):
+                act()
+        self.assertEqual(pickle.loads(pickle.dumps(vehicle.solve))(voltage=0).status, "stalled")
+
+    def test_files_that_are_no_data_sets(self):
+        with self.assertRaises(FileNotFoundError) as caught:
+            wb.open_dataset("none.nc")
+        self.assertEqual(str(caught.exception), "[Errno 2] No such file or directory: 'none.nc'")
+        with self.assertRaisesRegex(wb.InputError, "friction2022.toml: is no NetCDF file: "):
+            wb.open_dataset(DATA / "designs" / "friction2022.toml")
+
     def test_choices_flags_and_counts(self):
         vehicle = reference()
         for act, text in (

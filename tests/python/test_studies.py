@@ -179,11 +179,22 @@ class Studies(unittest.TestCase):
             (lambda: wb.fit(vehicle, bench, parameters=bounds), "^parameters: is given in the bench and beside it$", wb.InputError),
             (lambda: wb.fit(vehicle, bench, condition="air"), "^condition: belongs to each log", wb.InputError),
             (lambda: wb.fit("flapper", deviation=0.1), "^deviation: is for data of a vehicle", TypeError),
+            (lambda: wb.fit("data/bench/air.csv"), "^a log needs the vehicle and what to fit: ", TypeError),
             (lambda: wb.tolerance(vehicle), "^study: a vehicle needs a study beside it$", TypeError),
             (lambda: wb.optimise(vehicle, "optimise-hover"), "^a study file names its vehicle", TypeError),
         ):
             with self.subTest(text), self.assertRaisesRegex(error, text):
                 act()
+
+    def test_keys_are_attributes(self):
+        flight = wb.read("friction2022-battery").endurance()
+        for key in flight:
+            self.assertEqual(getattr(flight, key), flight[key])
+            self.assertIn(key, dir(flight))
+        self.assertEqual(repr(flight), str(flight).rstrip("\n"))
+        self.assertIn("battery", repr(flight))
+        with self.assertRaisesRegex(AttributeError, "^'Flight' object has no attribute or key 'endurance'$"):
+            flight.endurance
 
     def test_vehicle_and_study_in_either_order(self):
         spread = {"key": "friction.radius", "distribution": "normal", "relative_deviation": 0.05}

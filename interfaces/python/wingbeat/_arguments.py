@@ -170,7 +170,9 @@ def held_by(**asked: Any) -> dict[str, float]:
 
 
 def array(name: str, values: Any, unit: str = "") -> npt.NDArray[np.float64]:
-    """Real numbers as an array of any shape; where there is a unit, texts are read with theirs."""
+    """Real numbers as an array of any shape; where there is a unit, texts are read with theirs, also a single one."""
+    if unit and isinstance(values, str):
+        return np.array(number(name, values, unit))
     if isinstance(values, (str, bytes, Mapping)):
         raise wrong_type(name, "an array of numbers", values)
     if is_masked(values):

@@ -100,15 +100,15 @@ class Ensemble:
         keys : str or list of str
             A key, or a list of keys.
         threads : int, default 0
-            At most so many; 0: one for each core.
+            Number of threads at most; 0: one for each core.
         progress : bool or function, optional
             True shows a bar, a function is called with designs done and designs.
 
         Returns
         -------
-        numpy.ndarray
-            An array (designs, metrics, keys), without the dimension of a metric or key that is named alone [unit of
-            the metric per unit of the key].
+        numpy.ndarray, shape (designs, metrics, keys)
+            Derivatives [unit of the metric per unit of the key]; a metric or key that is named alone, not in a list,
+            has no dimension.
 
         Raises
         ------
@@ -214,20 +214,20 @@ def solve_columns(
 
     Parameters
     ----------
-    columns : dict
-        A dict or DataFrame with an array of SI numbers (or of texts with units) for each numeric key that varies;
-        other values hold for all designs. The key "frequency" is a flapping frequency to be held [Hz], "lift",
-        "lift_to_weight" and "power" are held likewise.
+    columns : dict or DataFrame
+        An array of SI numbers, or of texts with units, for each numeric key that varies; other values hold for all
+        designs. The keys "frequency", "lift", "lift_to_weight" and "power" are held by the voltage as the options of
+        these names.
     vehicle : Vehicle, optional
-        What the other keys are; not needed where the columns state a whole vehicle.
+        The vehicle with all keys that are no column; not needed where the columns state a whole vehicle.
     frequency : float or str, optional
-        [Hz], held by all designs: the voltage is found for each.
+        Flapping frequency of all designs [Hz]; the voltage of each is found.
     lift : float or str, optional
-        [N], the same for the mean lift: the lowest voltage that yields it.
+        Mean lift of all designs [N]; the lowest voltage that yields it is found.
     lift_to_weight : float, optional
-        The same for the lift over the weight; 1: hover.
+        Lift over weight of all designs [1], likewise; 1: hover.
     power : float or str, optional
-        [W], the same for the mean electrical power.
+        Mean electrical power of all designs [W], likewise.
     allow_extrapolation : bool, default False
         A search for a lift may leave the model's domain.
     condition : str, default 'air'
@@ -235,16 +235,16 @@ def solve_columns(
     tolerance : float, default 1e-06
         Wanted relative accuracy of every metric, 1e-12 to 1e-2.
     metrics : list of str, optional
-        Those wanted, fewer cost less; default: all but hover and endurance.
+        Names of the metrics to compute, fewer cost less; default: all but hover and endurance.
     threads : int, default 0
-        At most so many; 0: one for each core.
+        Number of threads at most; 0: one for each core.
     progress : bool or function, optional
         True shows a bar (tqdm where it is installed), a function is called with designs done and designs.
 
     Returns
     -------
     Ensemble
-        An Ensemble, in the order of the rows.
+        In the order of the rows; arrays of shape (n,) for n designs.
 
     Raises
     ------

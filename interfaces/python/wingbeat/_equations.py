@@ -30,14 +30,14 @@ class EquationsOfMotion:
     Parameters
     ----------
     vehicle : Vehicle
-        A Vehicle.
+        The vehicle.
     condition : str, default 'air'
         "air", "vacuum" or "wingless".
 
     Raises
     ------
     InputError
-        For a condition that there is not.
+        For an unknown condition.
 
     Examples
     --------
@@ -60,21 +60,21 @@ class EquationsOfMotion:
         Parameters
         ----------
         time : float
-            Since the start [s].
-        state : array_like
-            A number for each of `states`, or an array with a column for each of many states [SI].
+            Time since the start [s].
+        state : array_like, shape (k,) or (k, n)
+            A number for each of the k `states` [SI], or a column for each of n states.
         voltage : float or str, optional
-            What drives the motor in place of the supply [V], through the same resistance.
+            Voltage that drives the motor in place of the supply [V], through the same resistance.
 
         Returns
         -------
-        numpy.ndarray
-            An array of the shape of `state`.
+        numpy.ndarray, shape of `state`
+            Derivatives of the state by time [SI per s].
 
         Raises
         ------
         InputError
-            For a state of another size, and numbers that are not finite.
+            For numbers that are not finite.
 
         Examples
         --------

@@ -51,12 +51,12 @@ def step(
     Returns
     -------
     matplotlib Figure
-        The figure, a panel for each input.
+        A panel for each input.
 
     Raises
     ------
     InputError
-        For an output that the model does not have.
+        For a negative duration, and for an unknown kind of event.
     ValueError
         Where the vehicle does not flap.
 
@@ -123,7 +123,7 @@ def bode(
     models : ControlModels
         What `wingbeat.linearise` returns.
     input : str, default 'voltage'
-        The name of an input.
+        The name of an input of the model.
     outputs : list of str, optional
         Names of outputs; default: lift, crank speed and electrical power.
     figure : matplotlib Figure, optional
@@ -134,7 +134,7 @@ def bode(
     Returns
     -------
     matplotlib Figure
-        The figure: gain over the steady gain [dB] and phase [deg] over frequency.
+        Gain over the steady gain [dB] and phase [deg] over frequency.
 
     Raises
     ------

@@ -37,12 +37,12 @@ def cycle(result: RunResult, *, figure: Figure | None = None, width: float | str
     Returns
     -------
     matplotlib Figure
-        The figure, a panel for each quantity over the time since stroke reversal.
+        A panel for each quantity over the time since stroke reversal.
 
     Raises
     ------
     ValueError
-        Unless flapping.
+        Unless the vehicle flaps.
 
     Examples
     --------
@@ -128,7 +128,7 @@ def power_flow(
     Parameters
     ----------
     results : RunResult or dict
-        A RunResult that flaps, or a dict of several with what stands beside their bars.
+        A RunResult that flaps; or a dict of several, by the names beside their bars.
     ax : matplotlib Axes, optional
         The Axes to draw into; default: those of a new figure.
     width : float or str, default "89 mm"
@@ -137,12 +137,12 @@ def power_flow(
     Returns
     -------
     matplotlib Axes
-        The Axes.
+        A bar for each result.
 
     Raises
     ------
     ValueError
-        Unless all flap.
+        Unless all of them flap.
 
     Notes
     -----
@@ -207,7 +207,7 @@ def start_up(start: StartUp, *, figure: Figure | None = None, width: float | str
     Returns
     -------
     matplotlib Figure
-        The figure, a panel for the speed and one for the current.
+        A panel for the speed and one for the current.
 
     Raises
     ------
@@ -264,7 +264,7 @@ def flight(found: Flight, *, figure: Figure | None = None, width: float | str = 
     Returns
     -------
     matplotlib Figure
-        The figure, a panel for each quantity.
+        A panel for each quantity.
 
     Raises
     ------

@@ -33,7 +33,7 @@ def front(
     found : Front
         What `wingbeat.optimise` returns for several objectives.
     across, up : str, optional
-        The metrics along the axes; default: the first two objectives.
+        Metrics along the axes; default: the first two objectives.
     ax : matplotlib Axes, optional
         The Axes to draw into; default: those of a new figure.
     width : float or str, default "89 mm"
@@ -42,7 +42,7 @@ def front(
     Returns
     -------
     matplotlib Axes
-        The Axes.
+        A point for each design.
 
     Raises
     ------
@@ -111,7 +111,7 @@ def residuals(found: Found, *, figure: Figure | None = None, width: float | str 
     Returns
     -------
     matplotlib Figure
-        The figure: above, fitted over measured values, each over the largest of its quantity; below, the residuals.
+        Above, fitted over measured values, each over the largest of its quantity; below, the residuals.
 
     Raises
     ------
@@ -187,7 +187,7 @@ def tolerance(
     Returns
     -------
     matplotlib Axes
-        The Axes, a row for each metric.
+        A row for each metric.
 
     Raises
     ------
@@ -251,7 +251,7 @@ def sensitivity(
     Returns
     -------
     matplotlib Axes
-        The Axes, a row for each parameter.
+        A row for each parameter.
 
     Raises
     ------

@@ -243,7 +243,7 @@ def lines(
     Returns
     -------
     matplotlib Axes
-        The Axes.
+        A curve for each combination of the other axes.
 
     Raises
     ------
@@ -283,12 +283,12 @@ def trends(
     Returns
     -------
     matplotlib Figure
-        The figure.
+        A panel for each metric.
 
     Raises
     ------
     InputError
-        As of `lines`.
+        For a metric that the data set does not have, and for a sweep of no or of several axes of numbers.
 
     Examples
     --------
@@ -332,7 +332,7 @@ def contours(
     Returns
     -------
     matplotlib Axes
-        The Axes.
+        With a colour bar beside them.
 
     Raises
     ------

@@ -63,33 +63,33 @@ def fit(
         A Vehicle with the start of the fit; or a bench alone, as the path of a bench file (TOML), the name of a shipped
         one, or a dict of its tables, which names its vehicle.
     data : DataFrame, xarray.Dataset, dict, path or list, optional
-        What was measured, of a Vehicle: a table with a row for each operating point, in memory or as a CSV file.
+        With a Vehicle: the measurements, a table with a row for each operating point, in memory or as a CSV file.
         Columns are named with their units as in logs: "voltage_V" or "frequency_Hz" for what was set,
-        "current_mean_mA", "Lift (g)" and so on for what was measured; a NaN or NA is left out. Several logs are a list,
-        each a table or a dict such as `{"data": frame, "condition": "vacuum"}` with the keys of `[[log]]` in bench
-        files. A dict of the tables of a bench file is taken as well.
+        "current_mean_mA", "Lift (g)" and so on for what was measured; a NaN or NA is left out. Several logs are a
+        list, each a table or a dict such as `{"data": frame, "condition": "vacuum"}` with the keys of `[[log]]` in
+        bench files. A dict of the tables of a bench file is taken as well.
     parameters : dict or list of dict, optional
         What is fitted, with its bounds: `{"friction.radius": ("0 mm", "8 mm")}`, SI numbers or texts with a unit; a
-        third value is the start, in place of the vehicle's. In a list, the tables `[[parameter]]` of bench files.
-        Needed with data that are not the tables of a bench file.
+        third value is the start, in place of the vehicle's. A list holds tables `[[parameter]]` of bench files.
+        Needed unless `data` are the tables of a bench file.
     deviation : float, str or dict, optional
         Standard deviation of the measured values: a number is relative to each value [1]; "estimated" (the default) has
         it estimated from the residuals, which takes at least six more values than parameters in each column. A dict has
         one for each column, `{"default": 0.01, "frequency": "0.1 Hz"}`, where a text with a unit is absolute.
     condition : str, optional
-        "air" (the default), "vacuum" or "wingless": where `data` were measured. A log of a list may have its own.
+        Where `data` were measured: "air" (the default), "vacuum" or "wingless". A log of a list may state its own.
     springs : bool, optional
-        Whether the springs of a vehicle that has some were on; needed with such a vehicle.
+        Whether the springs were on; needed with a vehicle that has springs.
     loss : str, optional
-        "none" (the default), "huber", "soft-l1" or "cauchy": how much outliers count.
+        How much outliers count: "none" (the default), "huber", "soft-l1" or "cauchy".
     values : dict, optional
         Keys of the vehicle with other values: SI numbers, or texts with a unit.
     profiles : bool, default True
-        False: intervals from the curvature alone, which is faster.
+        Compute intervals from profiles; False takes them from the curvature alone, which is faster.
     compare_friction : bool, default False
-        Fits one law of friction after the other as well.
+        Fit one friction law after the other as well.
     threads : int, default 0
-        At most so many; 0: one for each core. What is found does not depend on it.
+        Number of threads at most; 0: one for each core. The result does not depend on it.
 
     Returns
     -------

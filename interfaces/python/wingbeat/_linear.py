@@ -164,26 +164,26 @@ def linearise(
     Parameters
     ----------
     vehicle : Vehicle
-        A Vehicle.
+        The vehicle.
     condition : str, default 'air'
         "air", "vacuum" or "wingless".
     frequency : float or str, optional
-        Of the operating point, which the voltage follows [Hz].
+        Flapping frequency of the operating point [Hz]; its voltage is found.
     lift : float or str, optional
-        Of the operating point, in place of a frequency [N].
+        Mean lift of the operating point [N], in place of a frequency; its voltage is found.
     allow_extrapolation : bool, default False
-        Searches for them outside the model's domain too.
+        The search for a frequency or a lift may leave the model's domain.
     cycles : int, default 0
-        Of the step responses; 0: about five time constants.
+        Number of cycles of the step responses; 0: about five time constants.
     hinge_offset : float or str, default 0.0
-        From the body's middle plane to the axis of a wing's stroke [m].
+        Distance from the body's middle plane to the axis of a wing's stroke [m].
     maps : bool, default True
         False: without the static maps, which take most of the time.
 
     Returns
     -------
     ControlModels
-        The ControlModels; `discrete` and `continuous` are the linear models.
+        The keys of `wingbeat linearise --json`; `discrete` and `continuous` are the linear models.
 
     Raises
     ------

@@ -134,6 +134,7 @@ class VehicleMethods:
             pitch_velocity=pitch_velocity,
         )
 
+    @method_of("solve_columns")
     def solve_columns(
         self,
         columns: Mapping[str, Any],
@@ -149,39 +150,7 @@ class VehicleMethods:
         threads: int = 0,
         progress: bool | Callable[[int, int], object] | None = None,
     ) -> Ensemble:
-        """Very many vehicles like it, on all cores: `wingbeat.solve_columns`, where the parameters are described.
-
-        Parameters
-        ----------
-        columns : dict or DataFrame
-            An array of SI numbers, or of texts with units, for each numeric key that varies; other values hold for all
-            designs.
-        frequency, lift, lift_to_weight, power : float or str, optional
-            Held by all designs [Hz], [N], [1], [W]: the voltage is found for each.
-        allow_extrapolation : bool, default False
-            A search for a lift may leave the model's domain.
-        condition : str, default 'air'
-            "air", "vacuum" or "wingless".
-        tolerance : float, default 1e-06
-            Wanted relative accuracy of every metric, 1e-12 to 1e-2.
-        metrics : list of str, optional
-            Those wanted, fewer cost less; default: all but hover and endurance.
-        threads : int, default 0
-            At most so many; 0: one for each core.
-        progress : bool or function, optional
-            True shows a bar (tqdm where it is installed), a function is called with designs done and designs.
-
-        Returns
-        -------
-        Ensemble
-            In the order of the rows.
-
-        Raises
-        ------
-        InputError
-            For a key that is unknown or has no place in the vehicle.
-        ValueError
-            Where no key has an array, or arrays differ in length.
+        """Very many vehicles like it, on all cores: `wingbeat.solve_columns`.
 
         Examples
         --------
@@ -422,3 +391,9 @@ class VehicleMethods:
         ('crank_angle', 'crank_speed', 'current')
         """
         return operations["EquationsOfMotion"](self, condition=condition)  # type: ignore[no-any-return]
+
+
+# Messages about arguments name the class that its users know.
+for _name, _method in vars(VehicleMethods).items():
+    if not _name.startswith("_"):
+        _method.__qualname__ = f"Vehicle.{_name}"

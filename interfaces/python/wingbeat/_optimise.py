@@ -127,20 +127,21 @@ def optimise(
         A Vehicle; or the study alone, as the path of a study file (TOML), the name of a shipped one, or a dict of its
         tables, which names its vehicle.
     study : dict
-        Of a Vehicle: the tables of a study file, without a vehicle.
+        With a Vehicle: the tables of a study file, without a vehicle.
     values : dict, optional
         Keys of the vehicle with other values: SI numbers, or texts with a unit.
     allow_extrapolation : bool, default False
         Designs outside the model's domain count.
     threads : int, default 0
-        At most so many; 0: one for each core.
+        Number of threads at most; 0: one for each core.
     progress : bool or function, optional
-        Of a front: True shows a bar (tqdm where it is installed), a function is called with designs done and designs.
+        For a front: True shows a bar (tqdm where it is installed), a function is called with designs done and
+        designs.
 
     Returns
     -------
     Found
-        A Found; of several objectives a Front, by functions an OwnOptimum.
+        With several objectives a Front, with functions an OwnOptimum.
 
     Raises
     ------

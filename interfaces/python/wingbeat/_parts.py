@@ -51,11 +51,11 @@ def motor_curves(
     Parameters
     ----------
     motor : Vehicle or dict
-        A Vehicle, or the keys of its section [motor] as a dict, with all constants that a vehicle file needs.
+        A Vehicle; or a dict with the keys of its section [motor], all constants that a vehicle file needs.
     voltage : float or str, optional
-        At the terminals [V]; of a dict needed, of a vehicle its supply's where not given.
-    speed : array_like, optional
-        Array [rad/s], >= 0; default: from rest to no load.
+        Voltage at the terminals [V]; default: that of the vehicle's supply. Needed with a dict.
+    speed : array_like, shape (n,), optional
+        Speeds of the output shaft [rad/s], >= 0, SI numbers or texts with a unit; default: from rest to no load.
 
     Returns
     -------
@@ -69,7 +69,7 @@ def motor_curves(
     InputError
         For keys and values that cannot be used.
     TypeError
-        Of a dict without a voltage.
+        For a dict without a voltage.
 
     Notes
     -----
@@ -123,10 +123,10 @@ def coefficient_curves(
     Parameters
     ----------
     aerodynamics : Vehicle, str or dict
-        A Vehicle, or the value of the key aerodynamics.coefficients: the name of a set ("translational-2022",
-        "normal-force-robofly") or the dict of a set of one's own.
-    angle_of_attack : array_like, optional
-        Array [rad]; default: 0 to 90 deg.
+        A Vehicle; or the value of the key aerodynamics.coefficients: the name of a set ("translational-2022",
+        "normal-force-robofly") or a dict with a set of your own.
+    angle_of_attack : array_like, shape (n,), optional
+        Angles of attack [rad], SI numbers or texts with a unit; default: 0 to 90 deg.
 
     Returns
     -------
@@ -137,7 +137,7 @@ def coefficient_curves(
     Raises
     ------
     InputError
-        For a set that there is not, and values that cannot be used.
+        For an unknown set, and for values that cannot be used.
     TypeError
         For what is neither a vehicle nor a set.
 
@@ -179,9 +179,9 @@ def kinematics(transmission: Vehicle | Mapping[str, Any], *, crank_angle: Any = 
     Parameters
     ----------
     transmission : Vehicle or dict
-        A Vehicle, or the keys of its section [transmission] as a dict.
-    crank_angle : array_like, optional
-        Array [rad]; default: one turn.
+        A Vehicle; or a dict with the keys of its section [transmission].
+    crank_angle : array_like, shape (n,), optional
+        Crank angles [rad], SI numbers or texts with a unit; default: one turn.
 
     Returns
     -------

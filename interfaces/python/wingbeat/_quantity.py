@@ -9,11 +9,11 @@ class Quantity(float):
     Parameters
     ----------
     value : float
-        The number, SI.
+        The number, in this unit.
     unit : str, default '1'
-        Its unit, "1" for a plain number.
+        Its unit as UDUNITS spells it, "1" for a plain number.
     long_name : str, default ''
-        What it is.
+        The name of the quantity, for labels.
 
     Raises
     ------

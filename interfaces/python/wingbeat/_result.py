@@ -121,7 +121,7 @@ class RunResult(WithMetrics):
         Raises
         ------
         ValueError
-            Unless flapping.
+            Unless the vehicle flaps.
         """
         if self._cycle is None:
             if self.status != "flapping":
@@ -150,7 +150,7 @@ class RunResult(WithMetrics):
 
         Returns
         -------
-        float or numpy.ndarray
+        float or numpy.ndarray, shape (keys,)
             A number for a key, an array for a list of keys [unit of the metric per unit of the key].
 
         Raises
@@ -282,26 +282,26 @@ def simulate(
     Parameters
     ----------
     vehicle : Vehicle
-        A Vehicle.
+        The vehicle.
     condition : str, default 'air'
         "air", "vacuum" or "wingless".
     tolerance : float, default 1e-06
         Wanted relative accuracy of the metrics of steady flapping, 1e-11 to 1e-2.
     max_time : float or str, default 0.0
-        Gives up after this time [s]; 0: chosen from the vehicle's own time scales.
+        Time after which the simulation gives up [s]; 0: chosen from the vehicle's own time scales.
     crank_angle : float or str, default 0.0
-        At the start [rad].
+        Crank angle at the start [rad].
     crank_speed : float or str, default 0.0
-        At the start [rad/s].
+        Crank speed at the start [rad/s].
     current : float or str, default 0.0
-        At the start [A].
+        Current at the start [A].
     record_interval : float or str, default 0.0
-        Between samples [s]; 0: every step of the integrator.
+        Time between samples [s]; 0: every step of the integrator.
 
     Returns
     -------
     StartUp
-        A StartUp, whether it ends in flapping or not.
+        Whether it ends in flapping or not.
 
     Raises
     ------

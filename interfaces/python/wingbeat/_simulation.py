@@ -50,23 +50,23 @@ class Simulation:
     Parameters
     ----------
     vehicle : Vehicle
-        A Vehicle, at rest at time 0 unless another state is given.
-    voltage : array_like, optional
-        What commands the voltage [V], see the attribute.
+        The vehicle, at rest at time 0 unless another state is given.
+    voltage : float, str, function or pair of arrays, optional
+        What commands the voltage [V]: see the attribute `voltage`. Without it the supply drives the motor.
     condition : str, default 'air'
         "air", "vacuum" or "wingless".
     tolerance : float, default 1e-08
         Admissible relative error of an integration step, 1e-12 to 1e-2.
     angle : float or str, default 0.0
-        Of the crank or, of a direct drive, of the stroke at the start [rad].
+        Crank angle at the start, or stroke angle of a direct drive [rad].
     speed : float or str, default 0.0
-        Likewise [rad/s].
+        Crank speed at the start, or flapping velocity of a direct drive [rad/s].
     current : float or str, default 0.0
-        At the start [A].
+        Current at the start [A].
     pitch_angle : float or str, default 0.0
-        Of wings on hinges at the start [rad].
+        Pitch angle of wings on hinges at the start [rad].
     pitch_velocity : float or str, default 0.0
-        Likewise [rad/s].
+        Pitch velocity of wings on hinges at the start [rad/s].
 
     Raises
     ------
@@ -187,21 +187,21 @@ class Simulation:
         Parameters
         ----------
         time : float or str
-            Where to [s]; not in the past.
+            Time to step to [s]; not in the past.
         until : str, optional
-            Stops behind the first event of this kind: "revolution" (the crank angle passes a multiple of 2 pi
+            Stop behind the first event of this kind: "revolution" (the crank angle passes a multiple of 2 pi
             forwards), "force-sign-change" (of the rod), "standstill", "breakaway", "supply-switch", "stop-impact",
             "jam".
 
         Returns
         -------
         list of Event
-            The events on the way, each an Event.
+            The events on the way.
 
         Raises
         ------
         InputError
-            For a time in the past, and for a kind of event that there is not.
+            For a time in the past, and for an unknown kind of event.
 
         Notes
         -----
@@ -224,19 +224,19 @@ class Simulation:
         Parameters
         ----------
         duration : float or str
-            For how long [s]; not negative.
+            Time to step [s]; not negative.
         until : str, optional
-            Stops behind the first event of this kind, as of `step_to`.
+            Stop behind the first event of this kind; `step_to` lists them.
 
         Returns
         -------
         list of Event
-            The events on the way, each an Event.
+            The events on the way.
 
         Raises
         ------
         InputError
-            For a negative duration, and for a kind of event that there is not.
+            For a negative duration, and for an unknown kind of event.
 
         Examples
         --------
@@ -255,15 +255,14 @@ class Simulation:
 
         Parameters
         ----------
-        times : array_like
-            One dimension [s], SI numbers or texts with a unit, which must not fall.
+        times : array_like, shape (n,)
+            Times [s], SI numbers or texts with a unit; they must not fall.
 
         Returns
         -------
         xarray.Dataset
-            A data set over `time` with the variables of `RunResult.cycle`, with units and long names, NaN behind a
-            jam; over the dimension `event`: `event`, `event_time` [s] and `event_crank_angle` [rad] of what has
-            happened on the way.
+            The variables of `RunResult.cycle` over `time`, with units and long names, NaN behind a jam; over the
+            dimension `event`: `event`, `event_time` [s] and `event_crank_angle` [rad].
 
         Raises
         ------
@@ -311,7 +310,7 @@ class Simulation:
         Parameters
         ----------
         state : SimulationState
-            What `save` has returned.
+            What `save` returned.
 
         Raises
         ------

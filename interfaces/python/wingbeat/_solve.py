@@ -75,47 +75,49 @@ def solve(
     design : Vehicle or dict
         A Vehicle; or a dict or DataFrame of columns with a design in each row: see `wingbeat.solve_columns`.
     vehicle : Vehicle, optional
-        Of columns: what the keys are that no column states.
+        Of columns: the vehicle with all keys that are no column.
     voltage : float or str, optional
-        Of one vehicle: the supply's [V], in place of the vehicle's own.
+        Of one vehicle: voltage of the supply [V], in place of the vehicle's own.
     frequency : float or str, optional
-        [Hz], in place of a voltage: the voltage is found that yields it (a direct drive's supply has it).
+        Flapping frequency [Hz], in place of a voltage: the voltage that yields it is found. A direct drive has the
+        frequency of its supply.
     lift : float or str, optional
-        [N], in place of either: the voltage (pwm: the duty) is found that yields this mean lift.
+        Mean lift [N], in place of a voltage: the voltage (with pwm the duty) that yields it is found.
     lift_to_weight : float, optional
-        The same for the lift over the weight [1]; 1: hover.
+        Lift over weight [1], likewise; 1: hover.
     power : float or str, optional
-        [W], the same for the mean electrical power.
+        Mean electrical power [W], likewise.
     angle_of_attack : float or str, optional
-        Of one vehicle: at mid-stroke [rad]; the aerodynamics.pitch_coefficient is found that leads to it.
+        Of one vehicle: angle of attack at mid-stroke [rad]; the aerodynamics.pitch_coefficient that leads to it is
+        found.
     condition : str, default 'air'
         "air", "vacuum" or "wingless".
     method : str, default 'orbit'
-        Of one vehicle: "orbit", or "transient", simulated from rest.
+        Of one vehicle: "orbit", or "transient" to simulate from rest.
     tolerance : float, default 1e-06
         Wanted relative accuracy of every metric, 1e-12 to 1e-2.
     allow_extrapolation : bool, default False
         A search for a frequency, a lift or a power may leave the model's domain.
     endurance : bool, default False
-        Of one vehicle on a battery: how long it hovers and how long it flaps, too, which costs a flight.
+        Of one vehicle on a battery: compute also how long it hovers and flaps, which costs a flight.
     metrics : list of str, optional
-        Of columns: the metrics wanted, fewer cost less.
+        Of columns: names of the metrics to compute; fewer cost less.
     threads : int, default 0
-        Of columns: at most so many threads; 0: one for each core.
+        Of columns: number of threads at most; 0: one for each core.
     progress : bool or function, optional
         Of columns: True shows a bar, a function is called with designs done and designs.
 
     Returns
     -------
     RunResult or Ensemble
-        A RunResult, whether it flaps or not; of columns an Ensemble.
+        A RunResult for a vehicle, whether it flaps or not; an Ensemble for columns.
 
     Raises
     ------
     InputError
         For options that cannot be used, and for more than one of voltage, frequency, lift, lift_to_weight and power.
     TypeError
-        For what is neither a vehicle nor columns, and for an option of the one given with the other.
+        For what is neither a vehicle nor columns, and for an option that only the other one has.
 
     Examples
     --------

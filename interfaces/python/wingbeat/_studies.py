@@ -31,13 +31,14 @@ if TYPE_CHECKING:
 class StudyResult(Mapping[str, Any]):
     """What a study found: a mapping with the keys of `--json` of the program's command of that name, in SI units.
 
-    `print(result)` is the program's readable report.
+    The keys are attributes as well, `result.status` for `result["status"]`. `print(result)` is the program's readable
+    report, which is what Python and notebooks show of it.
 
     Examples
     --------
     >>> flight = wb.read("friction2022-battery").endurance()
-    >>> flight["status"], len(flight) > 5
-    ('flapping', True)
+    >>> flight["status"], flight.status, len(flight) > 5
+    ('flapping', 'flapping', True)
     """
 
     def __init__(self, found: dict[str, Any]) -> None:
@@ -53,11 +54,19 @@ class StudyResult(Mapping[str, Any]):
     def __len__(self) -> int:
         return len(self._values)
 
+    def __getattr__(self, name: str) -> Any:
+        if not name.startswith("_") and name in self._values:
+            return self._values[name]
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute or key {name!r}")
+
+    def __dir__(self) -> list[str]:
+        return sorted({*super().__dir__(), *self._values})
+
     def __str__(self) -> str:
         return self._text
 
     def __repr__(self) -> str:
-        return f"<{type(self).__name__}: {', '.join(self._values)}>"
+        return self._text.rstrip("\n")
 
 
 class Flight(StudyResult):
@@ -173,6 +182,8 @@ def file_of(study: Study, vehicle: Vehicle | None, section: str = "study") -> It
             raise wrong_type(section, f"the path of a {section} file, or a dict of its tables", study)
         if vehicle is not None:
             raise TypeError(f"a {section} file names its vehicle; a vehicle can be given with a dict")
+        if section == "bench" and os.fsdecode(study).lower().endswith((".csv", ".txt")):
+            raise TypeError("a log needs the vehicle and what to fit: wingbeat.fit(vehicle, log, parameters={...})")
         yield path(section, study)
         return
     tables: dict[str, Any] = {**mapping(section, study)}
@@ -201,16 +212,16 @@ def endurance(vehicle: Vehicle, *, hover: bool = False, allow_extrapolation: boo
     Parameters
     ----------
     vehicle : Vehicle
-        A Vehicle on a battery.
+        The vehicle, on a battery.
     hover : bool, default False
-        Fly at the throttle that just carries the weight, as `supply.throttle = "hover"`.
+        Fly at the throttle that just carries the weight, as with `supply.throttle = "hover"`.
     allow_extrapolation : bool, default False
         Flight outside the model's domain may hover.
 
     Returns
     -------
     Flight
-        A Flight: `flight["hover_s"]` and `flight["endurance_s"]` [s], `flight.trajectory` over time.
+        `flight["hover_s"]` and `flight["endurance_s"]` [s], and `flight.trajectory` over time.
 
     Raises
     ------
@@ -240,20 +251,20 @@ def identify_motor(
     Parameters
     ----------
     sheet : path
-        The path of the data sheet.
+        The path of the data sheet, or the name of a shipped one.
     frequency : float or str, optional
-        [Hz], that the user has in mind, for the remark about the inductance.
+        The flapping frequency that you plan [Hz], for the remark about the inductance.
     assume_steel_cylinder : bool, default False
-        Where the sheet says nothing of the inertia, that of a steel cylinder of the rotor's size.
+        Where the sheet does not state the inertia, take that of a steel cylinder of the rotor's size.
     assume_typical_damping : bool, default False
-        Where it says nothing of the viscous loss, that of a small coreless motor.
+        Where the sheet does not determine the viscous loss, take that of a small coreless motor.
     shaft : str, default 'output'
-        "output" or "motor": where the constants of `motor` stand.
+        "output" or "motor": the shaft that the constants of `motor` refer to.
 
     Returns
     -------
     Identification
-        An Identification; a sheet that does not determine the motor is a result as well.
+        A sheet that does not determine the motor gives a result as well, which names what is missing.
 
     Raises
     ------
@@ -317,13 +328,13 @@ def tolerance(
         A Vehicle; or the study alone, as the path of a study file (TOML), the name of a shipped one, or a dict of its
         tables, which names its vehicle.
     study : dict
-        Of a Vehicle: the tables of a study file, without a vehicle.
+        With a Vehicle: the tables of a study file, without a vehicle.
     values : dict, optional
         Keys of the vehicle with other values: SI numbers, or texts with a unit.
     allow_extrapolation : bool, default False
         Samples outside the model's domain count and may hover.
     threads : int, default 0
-        At most so many; 0: one for each core.
+        Number of threads at most; 0: one for each core.
     progress : bool or function, optional
         True shows a bar (tqdm where it is installed), a function is called with designs done and designs.
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import math
 import os
 import tempfile
@@ -13,6 +14,7 @@ from . import _core
 from ._arguments import (
     HELD, axis_values, callback, flag, held_by, mapping, number, path, refused, text, threads_of,
 )
+from ._errors import InputError
 from ._operations import operation
 from ._progress import shown
 from ._study import study_of, without_place
@@ -50,33 +52,33 @@ def sweep(
     Parameters
     ----------
     vehicle : Vehicle
-        A Vehicle.
+        The vehicle whose keys are varied.
     axes : dict
         Keys of the vehicle, "frequency", "lift", "lift_to_weight", "power", "condition" or "springs", each with its
-        values: SI numbers, texts with units, names; the last varies fastest.
+        values: SI numbers, texts with units, or names. The last one varies fastest.
     output : path, optional
-        A file (.nc) that keeps the data set, as `wingbeat sweep -o` writes it: interrupted, the same call goes on
-        from what is there. Without it nothing is left on the disk.
+        A file (.nc) that keeps the data set, as `wingbeat sweep -o` writes it. After an interruption the same call
+        continues from what is there. Without it nothing is left on the disk.
     frequency : float or str, optional
-        [Hz], held by all designs: the voltage is found for each.
+        Flapping frequency of all designs [Hz]; the voltage of each is found.
     lift : float or str, optional
-        [N], the same for the mean lift: the lowest voltage that yields it.
+        Mean lift of all designs [N]; the lowest voltage that yields it is found.
     lift_to_weight : float, optional
-        The same for the lift over the weight; 1: hover.
+        Lift over weight of all designs [1], likewise; 1: hover.
     power : float or str, optional
-        [W], the same for the mean electrical power.
+        Mean electrical power of all designs [W], likewise.
     allow_extrapolation : bool, default False
         A search for a lift may leave the model's domain.
     tolerance : float, default 1e-06
         Wanted relative accuracy of every metric, 1e-12 to 1e-2.
     metrics : list of str, optional
-        Those wanted; default: all that the vehicle has but hover and endurance.
+        Names of the metrics to compute; default: all that the vehicle has but hover and endurance.
     title : str, default ''
-        Of the data set.
+        Title of the data set.
     threads : int, default 0
-        At most so many; 0: one for each core.
+        Number of threads at most; 0: one for each core.
     force : bool, default False
-        Replaces a file that is not of this sweep.
+        Replace a file that is not of this sweep.
     progress : bool or function, optional
         True shows a bar (tqdm where it is installed), a function is called with designs done and designs.
 
@@ -146,12 +148,14 @@ def open_dataset(file: str | os.PathLike[str]) -> SweepData:
     Returns
     -------
     SweepData
-        The data set.
+        The data set, with metrics and the status by name as from `sweep`.
 
     Raises
     ------
     FileNotFoundError
         Where there is no such file.
+    InputError
+        For a file that is no NetCDF file.
 
     Examples
     --------
@@ -167,5 +171,12 @@ def open_dataset(file: str | os.PathLike[str]) -> SweepData:
 
     from ._accessor import SweepData
 
-    with xarray.open_dataset(os.fsdecode(path("file", file)), decode_timedelta=False) as data:
+    name = os.fsdecode(path("file", file))
+    if not os.path.exists(name):
+        raise FileNotFoundError(errno.ENOENT, os.strerror(errno.ENOENT), name)
+    try:
+        opened = xarray.open_dataset(name, engine="netcdf4", decode_timedelta=False)
+    except OSError as error:
+        raise InputError(f"{name}: is no NetCDF file: {error.strerror or error}") from None
+    with opened as data:
         return SweepData._of(data.load())

@@ -121,9 +121,9 @@ class Vehicle(VehicleMethods, Sections):
         Parameters
         ----------
         toml : str
-            The text.
+            The text of the file.
         name : str, default 'vehicle'
-            What messages call it.
+            The name of the text in messages.
 
         Returns
         -------
@@ -290,7 +290,7 @@ class Vehicle(VehicleMethods, Sections):
         Parameters
         ----------
         stroke_amplitude : float or str, default 1.0
-            Of a direct drive [rad]; a crank has its own.
+            Stroke amplitude of a direct drive [rad]; a crank has its own.
 
         Returns
         -------
