@@ -41,7 +41,8 @@ class Package:
                            if isinstance(statement, ast.Assign) and statement.targets[0].id == "__all__")
         # Names that are imported when they are first asked for.
         late = {name.name: (one.module, name.name) for statement in start.body if isinstance(statement, ast.If)
-                for one in statement.body if isinstance(one, ast.ImportFrom) for name in one.names}
+                for one in statement.body if isinstance(one, ast.ImportFrom) and one.module
+                for name in one.names}
         self.homes |= late
         self.public += list(late)
         # Modules without an underscore are public as well.

@@ -132,7 +132,7 @@ class Types(Refusals):
         with self.assertRaises(FileNotFoundError) as caught:
             wb.open_dataset("none.nc")
         self.assertEqual(str(caught.exception), "[Errno 2] No such file or directory: 'none.nc'")
-        with self.assertRaisesRegex(wb.InputError, "friction2022.toml: is no NetCDF file: "):
+        with self.assertRaisesRegex(wb.InputError, "friction2022.toml: is not a NetCDF file: "):
             wb.open_dataset(DATA / "designs" / "friction2022.toml")
 
     def test_choices_flags_and_counts(self):

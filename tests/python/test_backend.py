@@ -53,7 +53,7 @@ class ProgressOfABuild(unittest.TestCase):
 
 
 class Builds(unittest.TestCase):
-    """By a `cmake` that prints what it is told to; under a terminal, as pip runs it: with its output taken away."""
+    """By a `cmake` that prints what a test needs; under a terminal, as pip runs it: with its output taken away."""
 
     def run_build(self, script, setting=""):
         with tempfile.TemporaryDirectory() as folder:

@@ -30,6 +30,8 @@ def main(file: str) -> float:
     air = {"voltage_V": [2, 3, 4], "frequency_Hz": [16.0, 22.0, 27.5], "current_mean_mA": [110, 180, 253]}
     fitted = wb.fit(vehicle, air, parameters={"friction.radius": (0, "8 mm")}, deviation=0.01)
     same = vehicle.fit(air, parameters={"friction.radius": (0, "8 mm")}, deviation={"default": 0.01})
+    left, right = wb.plot.single_column.unit, data.sel(supply_voltage=3.0).status.item()
+    print(left, right)
     if fitted.vehicle is None or same.vehicle is None:
         raise SystemExit(str(fitted))
     print(flapping, fitted.vehicle.friction.radius == same.vehicle.friction.radius)

@@ -85,15 +85,16 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
+    from . import plot as plot
     from ._accessor import SweepData as SweepData
+else:
 
+    def __getattr__(name: str) -> Any:
+        """SweepData, which needs xarray, and `wingbeat.plot`, which needs matplotlib, where they are first asked for."""
+        if name == "SweepData":
+            from ._accessor import SweepData
 
-def __getattr__(name: str) -> Any:
-    """SweepData, which needs xarray, and `wingbeat.plot`, which needs matplotlib, where they are first asked for."""
-    if name == "SweepData":
-        from ._accessor import SweepData
-
-        return SweepData
-    if name == "plot":
-        return importlib.import_module(".plot", __name__)
-    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+            return SweepData
+        if name == "plot":
+            return importlib.import_module(".plot", __name__)
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

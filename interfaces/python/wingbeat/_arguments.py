@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 import operator
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from decimal import Decimal
 from numbers import Real
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 
@@ -22,6 +22,18 @@ if TYPE_CHECKING:
 #: More threads than any machine has.
 _MAX_THREADS = 4096
 
+
+class Table(Protocol):
+    """What a DataFrame of pandas has, among others."""
+
+    @property
+    def columns(self) -> Any: ...
+    def __getitem__(self, key: Any, /) -> Any: ...
+    def __iter__(self) -> Iterator[Any]: ...
+
+
+#: An array for each key.
+Columns = Mapping[str, Any] | Table
 
 #: What a voltage can be found for, and its unit.
 HELD = {"frequency": "Hz", "lift": "N", "lift_to_weight": "1", "power": "W"}

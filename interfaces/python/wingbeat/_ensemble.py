@@ -9,7 +9,7 @@ import numpy as np
 
 from . import _core
 from ._arguments import (
-    HELD, array, callback, flag, held_by, mapping, names, number, one_of, refused, text, threads_of, wrong_type,
+    HELD, Columns, array, callback, flag, held_by, mapping, names, number, one_of, refused, text, threads_of, wrong_type,
 )
 from ._operations import operation
 from ._progress import shown
@@ -38,7 +38,7 @@ class Ensemble:
     array([False,  True,  True])
     """
 
-    #: A code for each design: `statuses[code]` is its name, 0 flapping.
+    #: The status of each design as files have it, a number, 0 for flapping.
     status_code: npt.NDArray[np.int8]
     #: Limits of the model that are exceeded, bit by bit as in data sets; 0: inside, or not flapping.
     domain_code: npt.NDArray[np.int16]
@@ -196,7 +196,7 @@ def _is_column(values: Any) -> bool:
 
 @operation
 def solve_columns(
-    columns: Mapping[str, Any],
+    columns: Columns,
     *,
     vehicle: Vehicle | None = None,
     frequency: float | str | None = None,

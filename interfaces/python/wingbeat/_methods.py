@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
     from ._accessor import SweepData
+    from ._arguments import Columns
     from ._ensemble import Ensemble
     from ._equations import EquationsOfMotion
     from ._linear import ControlModels
@@ -137,7 +138,7 @@ class VehicleMethods:
     @method_of("solve_columns")
     def solve_columns(
         self,
-        columns: Mapping[str, Any],
+        columns: Columns,
         *,
         frequency: float | str | None = None,
         lift: float | str | None = None,

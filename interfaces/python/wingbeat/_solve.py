@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable
 from typing import Any, overload
 
 from . import _core
-from ._arguments import HELD, flag, number, one_of, optional_number, text, wrong_type
+from ._arguments import HELD, Columns, flag, number, one_of, optional_number, text, wrong_type
 from ._ensemble import Ensemble, is_columns, solve_columns
 from ._operations import operation
 from ._result import RunResult
@@ -32,7 +32,7 @@ def solve(
 ) -> RunResult: ...
 @overload
 def solve(
-    design: Mapping[str, Any],
+    design: Columns,
     /,
     *,
     vehicle: Vehicle | None = None,
@@ -49,7 +49,7 @@ def solve(
 ) -> Ensemble: ...
 @operation
 def solve(
-    design: Vehicle | Mapping[str, Any],
+    design: Vehicle | Columns,
     /,
     *,
     vehicle: Vehicle | None = None,

@@ -155,7 +155,7 @@ def open_dataset(file: str | os.PathLike[str]) -> SweepData:
     FileNotFoundError
         Where there is no such file.
     InputError
-        For a file that is no NetCDF file.
+        For a file that is not a NetCDF file.
 
     Examples
     --------
@@ -177,6 +177,6 @@ def open_dataset(file: str | os.PathLike[str]) -> SweepData:
     try:
         opened = xarray.open_dataset(name, engine="netcdf4", decode_timedelta=False)
     except OSError as error:
-        raise InputError(f"{name}: is no NetCDF file: {error.strerror or error}") from None
+        raise InputError(f"{name}: is not a NetCDF file: {error.strerror or error}") from None
     with opened as data:
         return SweepData._of(data.load())
