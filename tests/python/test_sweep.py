@@ -199,7 +199,7 @@ class Sweeps(unittest.TestCase):
         vehicle = reference()
         data = vehicle.sweep({"supply.voltage": [0.0, 3.0, 4.0], "friction.radius": [2e-3, 3e-3]})
         column = vehicle.solve_columns({"supply.voltage": [0.0, 3.0, 4.0]})
-        for one in (data.status, data["status"], data.wingbeat.status, data.lift_mean.status, column.to_xarray().status):
+        for one in (data.status, data["status"], data.wingbeat.status, data.coords["status"], column.to_xarray().status):
             self.assertEqual(one.dtype.kind, "U")
         self.assertEqual(column.status.dtype.kind, "U")
         self.assertEqual(list(column.status), [str(vehicle.solve(voltage=volts).status) for volts in (0, 3, 4)])
@@ -231,6 +231,13 @@ class Sweeps(unittest.TestCase):
                     picked = data.sel(supply_voltage=made.supply_voltage).transpose(*made.status.dims)
                     self.assertEqual(made.status.dtype.kind, "U")
                     np.testing.assert_array_equal(made.status, picked.status)
+        for between in (data.interp(supply_voltage=3.5), data.interp(supply_voltage=[3.5]), data.coarsen(supply_voltage=3).mean()):
+            self.assertNotIn("status", between.variables)
+            self.assertEqual(between.wingbeat.lift_mean.name, "lift_mean_n")
+        for one in (data.lift_mean, data["lift_mean_n"], data.lift_mean.where(data.status == "flapping")):
+            self.assertNotIn("status", one.coords)
+            self.assertGreater(one.interp(supply_voltage=3.5)[0], one.sel(supply_voltage=3)[0])
+            self.assertEqual(one.coarsen(supply_voltage=3).max().sizes["supply_voltage"], 1)
         lifting = data.where(data.lift_mean > 0.01)
         self.assertTrue(np.isnan(lifting.lift_mean[0]).all())
         self.assertEqual(float((data * 1e3).lift_mean.max()), 1e3 * float(data.lift_mean.max()))

@@ -71,12 +71,12 @@ class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
     """The data set of a sweep, an `xarray.Dataset` with metrics by the names of this package.
 
     `data.lift_mean`, or `data["lift_mean"]`, is the variable `lift_mean_n` of the file. The status of each design,
-    "flapping", "stalled", ..., is a coordinate, so that it stays with the data and with each metric: `data.status`,
-    `data["status"]` and `data.lift_mean.status` are the same texts, also of a selection, behind `where` and behind
-    arithmetic. `to_netcdf` writes it as the number that files of the program have, `status_code`.
+    "flapping", "stalled", ..., is a coordinate of the data set, which selections, `where` and arithmetic leave as it is:
+    `data.status` and `data["status"]` are the same texts. Between designs, as of `interp` and `coarsen`, there is none.
+    `to_netcdf` writes it as the number that files of the program have, `status_code`.
 
-    What the methods and operators of a SweepData return is a SweepData again. What xarray makes elsewhere (`groupby`,
-    `rolling`, `xarray.merge`) may be a plain data set; there `dataset.wingbeat` has the same names.
+    What the methods and operators of a SweepData return is a SweepData again. What xarray makes elsewhere (`rolling`,
+    `xarray.merge`) may be a plain data set; there `dataset.wingbeat` has the same names.
 
     Examples
     --------
@@ -86,7 +86,7 @@ class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
     >>> lifting = data.where(data.lift_mean > 0.01)
     >>> lifting.lift_mean.round(4).values, lifting.status.values.tolist()
     (array([   nan,    nan, 0.0159]), ['stalled', 'flapping', 'flapping'])
-    >>> (1e3 * data).sel(supply_voltage=4).lift_mean.status.item()
+    >>> (1e3 * data).sel(supply_voltage=4).status.item()
     'flapping'
     """
 
@@ -106,7 +106,11 @@ class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
     def __getitem__(self, key: Any) -> Any:
         if isinstance(key, list):
             key = [self._variable(name) for name in key]
-        return _again(super().__getitem__(self._variable(key)))
+        found = super().__getitem__(self._variable(key))
+        if isinstance(found, xarray.DataArray):
+            # An array with texts beside its numbers could not be interpolated, nor be taken means of blocks of.
+            return found.drop_vars("status", errors="ignore")
+        return _again(found)
 
     def _variable(self, name: Any) -> Any:
         """The name of a variable, also by that of a metric."""
@@ -124,7 +128,8 @@ class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
         data = cls(dataset.data_vars, dataset.coords, dataset.attrs)
         data.encoding = dataset.encoding
         if "status" in data.variables and data["status"].dtype.kind not in "OU":
-            kept = {name: value for name, value in data["status"].attrs.items() if not name.startswith("flag_")}
+            numbers = ("units", "flag_values", "flag_meanings")
+            kept = {name: value for name, value in data["status"].attrs.items() if name not in numbers}
             data = data.assign_coords(status=(data["status"].dims, _names_of(data["status"].values), kept))
         return data
 
@@ -152,9 +157,8 @@ class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
         """
         plain = xarray.Dataset(self.data_vars, self.coords, self.attrs)
         if "status" in plain.variables:
-            kept = plain["status"].attrs | {
-                "flag_values": np.arange(len(statuses), dtype=np.int8), "flag_meanings": " ".join(statuses)
-            }
+            flags: dict[str, Any] = {"flag_values": np.arange(len(statuses), dtype=np.int8), "flag_meanings": " ".join(statuses)}
+            kept: dict[str, Any] = {"units": "1", **plain["status"].attrs, **flags}
             plain = plain.reset_coords("status").assign(
                 status=(plain["status"].dims, _codes_of(plain["status"].values), kept)
             )
@@ -180,11 +184,37 @@ def _keeping(method: Callable[..., Any]) -> Callable[..., Any]:
     return call
 
 
+def _mapped(method: Callable[..., Any]) -> Callable[..., Any]:
+    """A method that makes its data set of arrays, which have no status."""
+
+    @functools.wraps(method)
+    def call(self: SweepData, *arguments: Any, **options: Any) -> Any:
+        found = _again(method(self, *arguments, **options))
+        status = self.variables.get("status")
+        if status is None or any(found.sizes.get(dimension) != size for dimension, size in status.sizes.items()):
+            return found
+        return found.assign_coords(status=status)
+
+    return call
+
+
+def _between(method: Callable[..., Any]) -> Callable[..., Any]:
+    """A method that gives numbers between designs, where there is no status."""
+
+    @functools.wraps(method)
+    def call(self: SweepData, *arguments: Any, **options: Any) -> Any:
+        return _again(method(self.drop_vars("status", errors="ignore"), *arguments, **options))
+
+    return call
+
+
 _OPERATORS = {f"__{prefix}{name}__" for prefix in ("", "r", "i") for name in (
     "add", "sub", "mul", "truediv", "floordiv", "mod", "pow", "and", "or", "xor")}
 _OPERATORS |= {f"__{name}__" for name in (
     "lt", "le", "gt", "ge", "eq", "ne", "neg", "pos", "abs", "invert", "array_ufunc")}
 
+_OTHERS = {"map": _mapped, "apply": _mapped, "interp": _between, "interp_like": _between, "coarsen": _between}
+
 for _name, _method in inspect.getmembers(xarray.Dataset, inspect.isfunction):
     if _name not in vars(SweepData) and (not _name.startswith("_") or _name in _OPERATORS):
-        setattr(SweepData, _name, _keeping(_method))
+        setattr(SweepData, _name, _OTHERS.get(_name, _keeping)(_method))
