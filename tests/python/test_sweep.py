@@ -263,6 +263,28 @@ class Sweeps(unittest.TestCase):
                 self.assertEqual(plain["status"].attrs["flag_meanings"].split()[:2], ["flapping", "stalled"])
                 np.testing.assert_array_equal(plain.wingbeat.status, data.status)
 
+    def test_statuses_of_other_files(self):
+        """A front has those of all designs that were evaluated."""
+        with xr.open_dataset(self.kept({"supply.voltage": [0.0, 3.0]})) as data:
+            flags = data["status"].attrs
+        made = xr.Dataset({"evaluated_status": ("solved", np.array([1, 0, 6], dtype=np.int8), flags),
+                           "own_status": ("solved", [1, 2, 3])})
+        with tempfile.TemporaryDirectory() as folder:
+            file, again = (pathlib.Path(folder) / name for name in ("front.nc", "again.nc"))
+            made.to_netcdf(file)
+            read = wb.open_dataset(file)
+            self.assertEqual(read["evaluated_status"].values.tolist(), ["stalled", "flapping", "undecided"])
+            self.assertEqual(read["own_status"].values.tolist(), [1, 2, 3])
+            read.to_netcdf(again)
+            with xr.open_dataset(file) as first, xr.open_dataset(again) as second:
+                xr.testing.assert_identical(first, second)
+
+    def kept(self, axes):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        reference().sweep(axes, output=pathlib.Path(folder.name) / "kept.nc")
+        return pathlib.Path(folder.name) / "kept.nc"
+
     def test_choices_and_held_frequencies(self):
         axes = {"condition": ["air", "vacuum"], "frequency": ["20 Hz", "22 Hz"]}
         data = reference().sweep(axes)

@@ -34,6 +34,20 @@ def _codes_of(names: Any) -> Any:
     return np.array(found, dtype=np.int8).reshape(np.shape(names))
 
 
+def _is_status(name: Any) -> bool:
+    """Whether a variable has statuses: of the designs of a sweep, of an optimum, ..."""
+    return isinstance(name, str) and (name == "status" or name.endswith("_status"))
+
+
+def _statuses_in(dataset: xarray.Dataset) -> list[str]:
+    """The variables of statuses: numbers with the meanings that files have, or texts."""
+    meanings = " ".join(statuses)
+    return [
+        str(name) for name, variable in dataset.variables.items()
+        if _is_status(name) and (variable.dtype.kind in "OU" or variable.attrs.get("flag_meanings") == meanings)
+    ]
+
+
 def status_of(dataset: xarray.Dataset) -> xarray.DataArray:
     """"flapping", "stalled", ... of each design, of a data set of this package or of a file that xarray has opened."""
     status = dataset["status"]
@@ -109,7 +123,7 @@ class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
         found = super().__getitem__(self._variable(key))
         if isinstance(found, xarray.DataArray):
             # An array with texts beside its numbers could not be interpolated, nor be taken means of blocks of.
-            return found.drop_vars("status", errors="ignore")
+            return found.drop_vars([name for name in found.coords if _is_status(name)])
         return _again(found)
 
     def _variable(self, name: Any) -> Any:
@@ -127,10 +141,11 @@ class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
         """The data set of a file of the program: its variables, coordinates and attributes, the status by name."""
         data = cls(dataset.data_vars, dataset.coords, dataset.attrs)
         data.encoding = dataset.encoding
-        if "status" in data.variables and data["status"].dtype.kind not in "OU":
-            numbers = ("units", "flag_values", "flag_meanings")
-            kept = {name: value for name, value in data["status"].attrs.items() if name not in numbers}
-            data = data.assign_coords(status=(data["status"].dims, _names_of(data["status"].values), kept))
+        numbers = ("units", "flag_values", "flag_meanings")
+        for name in _statuses_in(data):
+            given = data.variables[name]
+            kept = {key: value for key, value in given.attrs.items() if key not in numbers}
+            data = data.assign_coords({name: (given.dims, _names_of(given.values), kept)})
         return data
 
     def to_netcdf(self, *arguments: Any, **options: Any) -> Any:
@@ -156,12 +171,11 @@ class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
         True
         """
         plain = xarray.Dataset(self.data_vars, self.coords, self.attrs)
-        if "status" in plain.variables:
-            flags: dict[str, Any] = {"flag_values": np.arange(len(statuses), dtype=np.int8), "flag_meanings": " ".join(statuses)}
-            kept: dict[str, Any] = {"units": "1", **plain["status"].attrs, **flags}
-            plain = plain.reset_coords("status").assign(
-                status=(plain["status"].dims, _codes_of(plain["status"].values), kept)
-            )
+        flags = {"flag_values": np.arange(len(statuses), dtype=np.int8), "flag_meanings": " ".join(statuses)}
+        for name in _statuses_in(plain):
+            given = plain.variables[name]
+            kept: dict[str, Any] = {"units": "1", **given.attrs, **flags}
+            plain = plain.reset_coords(name).assign({name: (given.dims, _codes_of(given.values), kept)})
         return plain.to_netcdf(*arguments, **options)
 
 
