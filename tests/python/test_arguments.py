@@ -93,6 +93,13 @@ class Types(Refusals):
         self.assertEqual(vehicle.solve(voltage=wb.Quantity(2500.0, "mV")).lift_mean, wanted)
         self.assertEqual(vehicle.replace({"supply.voltage": wb.Quantity(2500.0, "mV")}).supply.voltage, 2.5)
         self.assertEqual(vehicle.solve(voltage=wb.Quantity(2.5)).lift_mean, wanted)
+        self.assertEqual(vehicle.replace(dict(vehicle)), vehicle)
+        study = {"objective": {"minimise": "power_electrical_w", "starts": 1, "screen": 32},
+                 "parameter": [{"key": "supply.voltage", "lower": wb.Quantity(2000.0, "mV"), "upper": wb.Quantity(3.0, "V")}]}
+        self.assertEqual(wb.optimise(vehicle, study).vehicle.supply.voltage, 2.0)
+        angle = vehicle.solve().angle_of_attack_min
+        self.assertEqual(angle.unit, "degree")
+        self.assertAlmostEqual(float(vehicle.solve(angle_of_attack=angle).angle_of_attack_min), float(angle), 6)
         length = vehicle.transmission.rod_length
         self.assertEqual(vehicle.replace({"friction.radius": length}).friction.radius, float(length))
         millivolts = xarray.DataArray([2500.0, 3000.0], dims="run", attrs={"units": "mV"})

@@ -8,6 +8,7 @@ import threading
 import time
 import unittest
 
+import numpy as np
 import wingbeat as wb
 from shared import DATA, PROGRAM, reference
 
@@ -34,7 +35,6 @@ class Studies(unittest.TestCase):
         hover = light.endurance(hover=True)
         self.assertEqual(dict(hover), printed("endurance", file, "--set", "vehicle.mass=1.5 g", "--hover"))
         self.assertEqual(hover["throttle"], "hover")
-        import numpy as np
 
         np.testing.assert_allclose(hover.trajectory.lift_to_weight, 1.0, rtol=1e-9)
         duty = light.solve(lift_to_weight=1, tolerance=1e-9).vehicle.supply.duty
@@ -49,7 +49,6 @@ class Studies(unittest.TestCase):
         model = models.discrete
         system = model.to_scipy()
         self.assertEqual(system.dt, models["model"]["period_s"])
-        import numpy as np
         from scipy import signal
 
         steps = models["model"]["step_responses"]["voltage"]
@@ -91,7 +90,6 @@ class Studies(unittest.TestCase):
         return tables
 
     def test_a_fit_of_frames_is_that_of_files(self):
-        import numpy as np
         import pandas
         import xarray
 
@@ -107,7 +105,6 @@ class Studies(unittest.TestCase):
             "vacuum": {"data": xarray.Dataset({name: ("row", vacuum[name]) for name in vacuum})},
             "wingless": {"data": {name: wingless[name].to_numpy() for name in wingless}},
         }
-        frames["vacuum"]["columns"] = {"row": "ignore"}
         found = wb.fit(self.bench(frames), vehicle=vehicle, profiles=False)
         for ours, theirs in zip(found["parameters"], expected["parameters"]):
             self.assertEqual(ours["key"], theirs["key"])
@@ -157,6 +154,22 @@ class Studies(unittest.TestCase):
         estimated = wb.fit(vehicle, frames["air"], springs=False, parameters=bounds, profiles=False)
         stated = wb.fit({**whole, "log": [one], "deviation": {"default": "estimated"}}, vehicle=vehicle, profiles=False)
         self.assertEqual(estimated["parameters"], stated["parameters"])
+
+    def test_data_that_state_their_units(self):
+        """A fit to what another vehicle does finds that vehicle: its data sets have names and units of their own."""
+        vehicle = wb.read("friction2022")
+        other = vehicle.replace({"friction.radius": "2.2 mm"})
+        designs = other.solve_columns({"supply.voltage": np.linspace(2, 5, 7)}, tolerance=1e-9).to_xarray()
+        data = designs[["voltage", "frequency", "current_mean", "lift_mean"]]
+        found = wb.fit(vehicle, data, parameters={"friction.radius": (0, "8 mm")}, deviation=0.01, profiles=False)
+        self.assertAlmostEqual(found.vehicle.friction.radius / 2.2e-3, 1.0, 5)
+        millinewtons = data.assign(lift_mean=1e3 * data.lift_mean)
+        millinewtons.lift_mean.attrs["units"] = "mN"
+        again = wb.fit(vehicle, millinewtons, parameters={"friction.radius": (0, "8 mm")}, deviation=0.01, profiles=False)
+        self.assertAlmostEqual(again.vehicle.friction.radius / found.vehicle.friction.radius, 1.0, 9)
+        millinewtons.lift_mean.attrs["units"] = "V"
+        with self.assertRaisesRegex(wb.InputError, r"^log\[0\].data, column names: lift_mean: the unit .V. is wrong"):
+            wb.fit(vehicle, millinewtons, parameters={"friction.radius": (0, "8 mm")})
 
     def test_data_of_a_vehicle_that_cannot_be_used(self):
         vehicle = wb.read("friction2022")

@@ -13,6 +13,7 @@ from typing import Any
 
 from ._arguments import flag, is_masked, mapping, path, real, refused, text, wrong_type
 from ._errors import InputError
+from ._tables import metrics, waveforms
 
 
 def bench_of(data: Any, *, parameters: Any, deviation: Any, condition: Any, springs: Any, loss: Any) -> Any:
@@ -133,7 +134,7 @@ def _write(file: pathlib.Path, name: str, data: Any) -> None:
 def _columns(name: str, data: Any) -> dict[str, list[str]]:
     """The columns of a DataFrame, of a Dataset, or of a dict of arrays, each value as text."""
     if hasattr(data, "to_dataframe"):  # an xarray.Dataset
-        data = data.to_dataframe().reset_index()
+        data = _frame(data)
     names = getattr(data, "columns", None)
     if names is None:
         if not isinstance(data, Mapping):
@@ -151,6 +152,16 @@ def _columns(name: str, data: Any) -> dict[str, list[str]]:
     if not made:
         raise refused(name, "has no columns")
     return made
+
+
+def _frame(data: Any) -> Any:
+    """The variables and coordinates of a Dataset as a DataFrame; quantities of the package with the units that they
+    state, as headers of logs have them. Dimensions that only count are left out, and so are statuses."""
+    data = data.drop_vars([name for name in data.coords if name not in data.dims and data[name].dtype.kind in "OU"])
+    frame = data.to_dataframe().reset_index()
+    frame = frame.drop(columns=[name for name in data.dims if name not in data.coords])
+    units = {name: data[name].attrs.get("units") for name in data.variables if name in metrics or name in waveforms}
+    return frame.rename(columns={name: f"{name} [{unit}]" for name, unit in units.items() if unit and unit != "1"})
 
 
 def _cell(name: str, value: Any) -> str:

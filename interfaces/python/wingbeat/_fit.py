@@ -65,9 +65,10 @@ def fit(
     data : DataFrame, xarray.Dataset, dict, path or list, optional
         With a Vehicle: the measurements, a table with a row for each operating point, in memory or as a CSV file.
         Columns are named with their units as in logs: "voltage_V" or "frequency_Hz" for what was set,
-        "current_mean_mA", "Lift (g)" and so on for what was measured; a NaN or NA is left out. Several logs are a
-        list, each a table or a dict such as `{"data": frame, "condition": "vacuum"}` with the keys of `[[log]]` in
-        bench files. A dict of the tables of a bench file is taken as well.
+        "current_mean_mA", "Lift (g)" and so on for what was measured; a Dataset may have metrics by name with
+        `attrs["units"]`. A NaN or NA is left out. Several logs are a list, each a table or a dict such as `{"data":
+        frame, "condition": "vacuum"}` with the keys of `[[log]]` in bench files. A dict of the tables of a bench file
+        is taken as well.
     parameters : dict or list of dict, optional
         What is fitted, with its bounds: `{"friction.radius": ("0 mm", "8 mm")}`, SI numbers or texts with a unit; a
         third value is the start, in place of the vehicle's. A list holds tables `[[parameter]]` of bench files.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import pathlib
 import re
@@ -23,6 +24,8 @@ def plain(value: Any, key: str = "value") -> Any:
     """A value of that key as the compiled half takes it: a number, True, False, a text, a list or a dict."""
     if type(value) is float:  # most of long arrays
         return value
+    if isinstance(value, Quantity) and value.unit != "1" and math.isfinite(value):
+        return f"{float(value)!r} {value.unit}"  # so that its unit is checked, or converted
     if isinstance(value, (bool, np.bool_)):
         return bool(value)
     if isinstance(value, str):
@@ -52,8 +55,6 @@ def keys_of(values: Mapping[str, Any]) -> dict[str, Any]:
             raise refused(ascii(key), "unknown key")
         if key in made:
             raise refused(key, "is given twice")
-        if isinstance(value, Quantity) and key in parameters and value.unit not in ("1", parameters[key].unit):
-            value = f"{float(value)!r} {value.unit}"
         made[key] = plain(value, key)
 
     for key, value in mapping("values", values).items():
