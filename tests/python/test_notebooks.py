@@ -38,7 +38,8 @@ class Notebooks(unittest.TestCase):
     def test_what_has_changed_is_seen(self):
         differing = self.script.differing
         for old, new in (("lift 8.74 mN", "lift 8.90 mN"), ("flapping", "stalled"), ("a\nb", "a"), ("1e-3", "-1e-3"),
-                         ("3 designs", "3 vehicles"), ("2 of 3", "2 of 4"), ("1 2", "1 2 3")):
+                         ("3 designs", "3 vehicles"), ("2 of 3", "2 of 4"), ("1 2", "1 2 3"),
+                         ("500 designs", "600 designs")):
             self.assertIn(repr(old.split("\n")[0]) if "\n" not in old else "lines",
                           differing(self.printed(old), self.printed(new)) or "")
         drawing = [self.output("display_data", data={"image/svg+xml": "<svg/>", "text/plain": "<Figure>"})]
@@ -47,7 +48,8 @@ class Notebooks(unittest.TestCase):
 
     def test_what_has_not_changed_is_not(self):
         differing = self.script.differing
-        for old, new in (("lift 8.740 mN", "lift 8.741 mN"), ("error 3.1e-11", "error -8e-12"), ("a  b", "a b")):
+        for old, new in (("lift 8.740 mN", "lift 8.741 mN"), ("error 3.1e-11", "error -8e-12"), ("a  b", "a b"),
+                         ("548 designs", "520 designs")):
             self.assertIsNone(differing(self.printed(old), self.printed(new)))
         one, other = ([self.output("display_data", data={"image/svg+xml": f"<svg>{n}</svg>"})] for n in (1, 2))
         self.assertIsNone(differing(one, other))
