@@ -2,7 +2,9 @@
 
 import importlib.machinery
 import importlib.util
+import os
 import unittest
+import unittest.mock
 
 from shared import ROOT
 
@@ -53,6 +55,23 @@ class Notebooks(unittest.TestCase):
             self.assertIsNone(differing(self.printed(old), self.printed(new)))
         one, other = ([self.output("display_data", data={"image/svg+xml": f"<svg>{n}</svg>"})] for n in (1, 2))
         self.assertIsNone(differing(one, other))
+
+    @unittest.skipUnless(all(importlib.util.find_spec(name) for name in ("ipykernel", "matplotlib")), "no kernel")
+    def test_figures_are_shown_once(self):
+        """As the value of a cell or not, with or without pyplot before, and the next ones as the first."""
+        import nbformat
+        from nbconvert.preprocessors import ExecutePreprocessor
+
+        cells = ["import wingbeat as wb; result = wb.read('friction2022').solve()", "wb.plot.cycle(result)",
+                 "wb.plot.power_flow(result)", "figure = wb.plot.cycle(result)", "figure", "wb.plot.cycle(result);",
+                 "import matplotlib.pyplot as plt\nwb.plot.cycle(result)\nplt.show()", "plt.show()"]
+        book = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(cell) for cell in cells])
+        with unittest.mock.patch.dict(os.environ):
+            os.environ.pop("MPLBACKEND", None)  # the kernel's own
+            os.environ["PYDEVD_DISABLE_FILE_VALIDATION"] = "1"
+            ExecutePreprocessor(timeout=120, kernel_name="python3").preprocess(book)
+        shown = [sum("image/png" in output.get("data", {}) for output in cell.outputs) for cell in book.cells]
+        self.assertEqual(shown, [0, 1, 1, 1, 1, 1, 1, 0])
 
 
 if __name__ == "__main__":

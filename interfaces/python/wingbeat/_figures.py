@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pathlib
 import textwrap
-from collections.abc import Callable, Sequence
-from contextlib import AbstractContextManager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -15,7 +15,9 @@ from ._quantity import Quantity
 from ._tables import Metric, metric_called, metric_rows, parameters
 
 try:
+    import matplotlib
     import matplotlib.pyplot as plt
+    from matplotlib.figure import Figure
     from matplotlib.transforms import ScaledTranslation
 except ModuleNotFoundError as error:
     raise ModuleNotFoundError(
@@ -69,10 +71,27 @@ _PREFIXES = ((1e-9, "n"), (1e-6, "µ"), (1e-3, "m"), (1.0, ""), (1e3, "k"))
 Drawn = TypeVar("Drawn", bound=Callable[..., Any])
 
 
-def styled() -> AbstractContextManager[None]:
+class Drawing(Figure):  # type: ignore[misc]
+    """A Figure that a notebook shows once, also where it is the value of a cell."""
+
+    def _ipython_display_(self) -> None:
+        # The inline backend shows what is still open at the end of a cell once more.
+        if "inline" in plt.get_backend():
+            plt.close(self)
+        raise NotImplementedError  # by which IPython displays it as any other Figure
+
+
+@contextmanager
+def styled() -> Iterator[None]:
     """The style, for what is drawn within."""
-    context: AbstractContextManager[None] = plt.style.context(STYLE, after_reset=True)
-    return context
+    interactive = plt.isinteractive()
+    try:
+        with plt.style.context(STYLE, after_reset=True):
+            yield
+            # A backend that is loaded by the first figure, as in a notebook, decides it for those that follow.
+            interactive = plt.isinteractive()
+    finally:
+        matplotlib.interactive(interactive)
 
 
 def display(unit: str, largest: float, efficiency: bool = False) -> tuple[float, str]:
@@ -159,7 +178,7 @@ def axes_of(ax: Any, width: float | str, height: float) -> Any:
 def panels_of(figure: Any, width: float | str, count: int, height: float, shared: bool = True) -> tuple[Any, list[Any]]:
     """The figure given, or a new one, and its panels one above the other, each of a height in inches."""
     if figure is None:
-        figure = plt.figure(figsize=(inches(width), count * height + 0.3))
+        figure = plt.figure(figsize=(inches(width), count * height + 0.3), FigureClass=Drawing)
     elif not hasattr(figure, "subplots"):
         raise TypeError(f"figure: expected a matplotlib Figure, got {type(figure).__name__}")
     axes = figure.subplots(count, 1, sharex=shared, squeeze=False)[:, 0]
