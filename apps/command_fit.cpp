@@ -1,6 +1,7 @@
 // wingbeat fit BENCH: a vehicle's parameters from bench measurements, and how sure they are.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -24,16 +25,17 @@ namespace {
 
 struct FitArguments {
   std::vector<std::string> overrides;
-  std::string file, output, plot, plot_width;
+  std::string file, output, plot, plot_cycles, plot_width;
   int threads = 0;
   bool json = false, compare_friction = false, no_profiles = false, force = false;
 };
 
 int run(const FitArguments& arguments) {
   const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
+  const auto cycles_format = asked_format("--plot-cycles", arguments.plot_cycles, arguments.plot_width);
   BenchFit fit = read_bench(arguments.file, arguments.overrides);
   fit.profiles = !arguments.no_profiles;
-  std::optional<OutputFile> output, covariance, plot;
+  std::optional<OutputFile> output, covariance, plot, cycles;
   const std::filesystem::path vehicle = arguments.output;
   if (!arguments.output.empty()) {
     const OutputRules rules{".toml", arguments.force};
@@ -41,6 +43,12 @@ int run(const FitArguments& arguments) {
     covariance.emplace("-o", vehicle.parent_path() / (vehicle.stem().string() + ".covariance.toml"), rules);
   }
   if (format) plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});
+  if (cycles_format) {
+    if (std::none_of(fit.logs.begin(), fit.logs.end(), [](const BenchLog& log) { return log.waveform; })) {
+      throw InputError(arguments.file, 0, 0, "--plot-cycles", "the bench has no waveforms");
+    }
+    cycles.emplace("--plot-cycles", arguments.plot_cycles, OutputRules{plot_extensions, arguments.force});
+  }
 
   const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
     for_each_in_parallel(count, act, arguments.threads);
@@ -70,6 +78,10 @@ int run(const FitArguments& arguments) {
   if (plot) {
     plot_residuals(fit, result, *format, plot->temporary());
     plot->commit();
+  }
+  if (cycles && !result.cycles.empty()) {
+    plot_fitted_cycles(fit, result, *cycles_format, cycles->temporary());
+    cycles->commit();
   }
   if (arguments.json) {
     print(json_fit(fit, result, candidates));
@@ -107,6 +119,8 @@ void add_fit(CLI::App& program, Action& action) {
   add_json(command, a->json);
   add_threads(command, a->threads);
   add_file(command, "--plot", a->plot, plot_extensions, "Plot the residuals by condition to FILE.svg, .pdf or .png");
+  add_file(command, "--plot-cycles", a->plot_cycles, plot_extensions,
+           "Plot measured waveforms over the fitted model's cycle to FILE.svg, .pdf or .png");
   add_plot_width(command, a->plot_width);
   add_force(*command, a->force);
   command->footer(

@@ -18,8 +18,9 @@ template <class Visit>
 void for_each_jet(OrbitGradient& g, const Visit& visit) {
   for (J& m : g.metrics.values) visit(m);
   for (GradientInstant& instant : g.instants) {
-    for (J* x : {&instant.crank_speed, &instant.current, &instant.flapping_velocity, &instant.lift, &instant.rod_force,
-                 &instant.motor_torque}) {
+    for (J* x :
+         {&instant.time, &instant.crank_speed, &instant.current, &instant.voltage, &instant.stroke_angle,
+          &instant.flapping_velocity, &instant.pitch_angle, &instant.lift, &instant.rod_force, &instant.motor_torque}) {
       visit(*x);
     }
   }

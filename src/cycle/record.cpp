@@ -61,6 +61,44 @@ WaveformRow CycleRecord::at(double theta) const {
   });
 }
 
+namespace {
+
+/// The row of a step at a time since the cycle's start, by Newton, and its crank angle; the step starts at
+/// `start_time`.
+template <class Recorded>
+std::pair<WaveformRow, double> row_at_time(const Recorded& recorded, std::size_t n, double start_time, double time,
+                                           double period) {
+  const auto& step = recorded.cycle.steps[n];
+  double phase_rate = recorded.system.phase_rate(step.y);
+  double theta = step.x + std::min(step.h, (time - start_time) * phase_rate);
+  WaveformRow row = row_inside(recorded, step, start_time, theta, phase_rate);
+  for (int iteration = 0; iteration < 20 && std::abs(row.time - time) > 1e-14 * period; ++iteration) {
+    theta = std::clamp(theta + (time - row.time) * phase_rate, step.x, step.x + step.h);
+    row = row_inside(recorded, step, start_time, theta, phase_rate);
+  }
+  return {row, theta};
+}
+
+/// Moves n and its start time on to the step in which `time` lies.
+template <class Steps>
+void advance(const Steps& steps, double time, std::size_t& n, double& start_time) {
+  while (n + 1 < steps.size() && start_time + steps[n].dq[std::size_t(Integral::time)] <= time) {
+    start_time += steps[n].dq[std::size_t(Integral::time)];
+    ++n;
+  }
+}
+
+}  // namespace
+
+double CycleRecord::phase_at(double time) const {
+  return visit(*this, [&](const auto& recorded) {
+    std::size_t n = 0;
+    double start_time = 0.0;
+    advance(recorded.cycle.steps, time, n, start_time);
+    return row_at_time(recorded, n, start_time, time, period()).second;
+  });
+}
+
 std::vector<WaveformRow> CycleRecord::waveform(int count) const {
   return visit(*this, [&](const auto& recorded) {
     std::vector<WaveformRow> rows;
@@ -68,22 +106,10 @@ std::vector<WaveformRow> CycleRecord::waveform(int count) const {
     const double period_time = period();
     std::size_t n = 0;
     double start_time = 0.0;
-    const auto& steps = recorded.cycle.steps;
     for (int k = 0; k < count; ++k) {
       const double time = period_time * k / (count - 1);
-      while (n + 1 < steps.size() && start_time + steps[n].dq[std::size_t(Integral::time)] <= time) {
-        start_time += steps[n].dq[std::size_t(Integral::time)];
-        ++n;
-      }
-      // Newton for the crank angle at this time.
-      double phase_rate = recorded.system.phase_rate(steps[n].y);
-      double theta = steps[n].x + std::min(steps[n].h, (time - start_time) * phase_rate);
-      WaveformRow row = row_inside(recorded, steps[n], start_time, theta, phase_rate);
-      for (int iteration = 0; iteration < 20 && std::abs(row.time - time) > 1e-14 * period_time; ++iteration) {
-        theta = std::clamp(theta + (time - row.time) * phase_rate, steps[n].x, steps[n].x + steps[n].h);
-        row = row_inside(recorded, steps[n], start_time, theta, phase_rate);
-      }
-      rows.push_back(row);
+      advance(recorded.cycle.steps, time, n, start_time);
+      rows.push_back(row_at_time(recorded, n, start_time, time, period_time).first);
     }
     return rows;
   });

@@ -26,7 +26,16 @@ constexpr ColumnAlias aliases[] = {{"u", "voltage"},
                                    {"electrical_power", "power_electrical"},
                                    {"input_power", "power_electrical"},
                                    {"stroke", "stroke_amplitude"},
-                                   {"angle", "crank_angle"}};
+                                   {"angle", "crank_angle"},
+                                   {"t", "time"},
+                                   {"i", "current"},
+                                   {"u", "voltage"},
+                                   {"supply_voltage", "voltage"},
+                                   {"stroke", "stroke_angle"},
+                                   {"pitch", "pitch_angle"},
+                                   {"force", "balance_force"},
+                                   {"thrust", "balance_force"},
+                                   {"balance", "balance_force"}};
 
 std::vector<const NamedColumn*> listed(std::span<const ColumnName> known) {
   std::vector<const NamedColumn*> list;
@@ -77,6 +86,32 @@ const std::vector<ColumnName>& waveform_quantities() {
       const auto quantity = WaveformQuantity(q);
       all.push_back({{name_of(quantity), name_of(quantity), unit_of(quantity)}, {true, {}, quantity}, true});
     }
+    return all;
+  }();
+  return columns;
+}
+
+const std::vector<ColumnName>& waveform_columns() {
+  static const std::vector<ColumnName> columns = [] {
+    std::vector<ColumnName> all = waveform_quantities();
+    for (const char* place : {"crank_angle", "phase"}) {
+      all.push_back({{place, place, "rad"}, {}, true, ColumnName::Part::place});
+    }
+    for (const ColumnName& c : waveform_quantities()) {
+      for (const char* suffix : {"_std", "_sd", "_scatter"}) {
+        all.push_back({{c.name + suffix, c.name + suffix, c.unit}, c.quantity, false, ColumnName::Part::scatter});
+      }
+    }
+    return all;
+  }();
+  return columns;
+}
+
+const std::vector<ColumnName>& record_columns() {
+  static const std::vector<ColumnName> columns = [] {
+    std::vector<ColumnName> all = waveform_quantities();
+    all.push_back({{"time", "time", "s"}, {}, true, ColumnName::Part::place});
+    all.push_back({{"burst", "burst", "1"}, {}, true, ColumnName::Part::burst});
     return all;
   }();
   return columns;

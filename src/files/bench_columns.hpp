@@ -15,12 +15,17 @@ namespace wingbeat::detail {
 struct ColumnName : NamedColumn {
   MeasuredQuantity quantity;
   bool may_be_negative;
+  enum class Part { value, place, scatter, burst } part = Part::value;
 };
 
 /// Of a log with an operating point in each row.
 const std::vector<ColumnName>& metric_columns();
-/// Of a log over one turn of the crank, beside the crank angle.
+/// Of a log over one cycle.
 const std::vector<ColumnName>& waveform_quantities();
+/// Beside them the place in the cycle (crank_angle, or phase in time) and the scatter of each quantity.
+const std::vector<ColumnName>& waveform_columns();
+/// Of a record of signals: the quantities, time and burst.
+const std::vector<ColumnName>& record_columns();
 
 /// The column of a name of the program or of one in use at benches ("current", "thrust"), with or without unit; null
 /// where it is none of them.

@@ -15,12 +15,16 @@
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
 
 using detail::ColumnName, detail::metric_columns, detail::waveform_quantities;
+
+/// Strings that name waveform quantities, as unknown_zero has them.
+constexpr const char* zero_example = "expected a list of quantities, as [\"stroke_angle\"]";
 
 class BenchReader {
  public:
@@ -33,7 +37,7 @@ class BenchReader {
         root_(name_, "", tree_) {}
 
   BenchFit read() {
-    const std::string_view sections[] = {"bench", "fit", "parameter", "deviation", "log"};
+    const std::string_view sections[] = {"bench", "fit", "parameter", "deviation", "log", "balance"};
     errors_.attempt([&] { root_.known_keys(sections); });
     const auto bench = root_.table("bench");
     if (!bench) root_.refuse("bench", "missing section [bench] with the name of a vehicle file");
@@ -47,6 +51,7 @@ class BenchReader {
       fit.design = read_design(find_vehicle(path_.parent_path(), vehicle), overrides_);
     });
     if (!has_vehicle) errors_.refuse();  // the rest is read for this vehicle
+    errors_.attempt([&] { read_balance(fit); });
     errors_.attempt([&] { read_parameters(fit); });
     errors_.attempt([&] { read_logs(fit); });
     errors_.refuse();
@@ -82,29 +87,67 @@ class BenchReader {
     }
   }
 
+  void read_balance(BenchFit& fit) const {
+    const auto section = root_.table("balance");
+    if (!section) return;
+    const std::string_view keys[] = {"mass", "stiffness", "damping"};
+    section->known_keys(keys);
+    Balance balance{section->needed_quantity("mass", "kg"), section->needed_quantity("stiffness", "N/m"),
+                    section->needed_quantity("damping", "N s/m")};
+    if (!(balance.mass > 0.0)) section->refuse(section->at("mass"), "mass", "must be > 0");
+    if (!(balance.stiffness > 0.0)) section->refuse(section->at("stiffness"), "stiffness", "must be > 0");
+    if (!(balance.damping >= 0.0)) section->refuse(section->at("damping"), "damping", "must be >= 0");
+    fit.balance = balance;
+  }
+
+  /// A free number of the balance; false where the key is another one.
+  bool read_of_balance(const TomlFields& p, const std::string& key, const BenchFit& fit, FreeParameter& free) const {
+    free.of_bench = balance_unknown(key);
+    if (!free.of_bench) return false;
+    if (!fit.balance) p.refuse(p.at("key"), "key", key + " needs the section [balance]");
+    using Kind = BenchUnknown::Kind;
+    const Kind kind = free.of_bench->kind;
+    free.parameter.key = key;
+    free.parameter.unit = kind == Kind::balance_mass ? "kg" : kind == Kind::balance_stiffness ? "N/m" : "N s/m";
+    free.lower = p.needed_quantity("lower", free.parameter.unit);
+    free.upper = p.needed_quantity("upper", free.parameter.unit);
+    const Balance& b = *fit.balance;
+    free.start = p.quantity("start", free.parameter.unit)
+                     .value_or(kind == Kind::balance_mass        ? b.mass
+                               : kind == Kind::balance_stiffness ? b.stiffness
+                                                                 : b.damping);
+    if (kind == Kind::balance_damping ? free.lower < 0.0 : !(free.lower > 0.0)) {
+      p.refuse(p.at("lower"), "lower", kind == Kind::balance_damping ? "must be >= 0" : "must be > 0");
+    }
+    return true;
+  }
+
   void read_parameters(BenchFit& fit) {
     const auto read_one = [&](const TomlFields& p) {
       const std::string_view keys[] = {"key", "lower", "upper", "start"};
       p.known_keys(keys);
       const std::string key = p.needed_text("key", "a number of the vehicle file, such as \"friction.radius\"");
       FreeParameter free;
-      try {
-        free.parameter = design_parameter(key);
-      } catch (const ParameterError& error) {
-        p.refuse(p.at("key"), "key", error.what());
+      if (!read_of_balance(p, key, fit, free)) {
+        try {
+          free.parameter = design_parameter(key);
+        } catch (const ParameterError& error) {
+          p.refuse(p.at("key"), "key", error.what());
+        }
+        free.lower = p.needed_quantity("lower", free.parameter.unit);
+        free.upper = p.needed_quantity("upper", free.parameter.unit);
+        const std::optional<double> own = free.parameter.value(fit.design);
+        const auto start = p.quantity("start", free.parameter.unit);
+        if (!start && !own) p.refuse("start", fmt::format("missing; the vehicle file has no {}", key));
+        free.start = start ? *start : *own;
       }
-      free.lower = p.needed_quantity("lower", free.parameter.unit);
-      free.upper = p.needed_quantity("upper", free.parameter.unit);
-      const std::optional<double> own = free.parameter.value(fit.design);
-      const auto start = p.quantity("start", free.parameter.unit);
-      if (!start && !own) p.refuse("start", fmt::format("missing; the vehicle file has no {}", key));
-      free.start = start ? *start : *own;
       if (!(free.lower < free.upper)) p.refuse(p.at("lower"), "lower", "must lie below upper");
       if (!(free.start >= free.lower && free.start <= free.upper)) {
         p.refuse(p.at("start"), "start",
                  fmt::format("must lie within the bounds, is {} {}", free.start, free.parameter.unit));
       }
       for (const double x : {free.lower, free.upper}) {
+        if (free.of_bench) break;
         Design<double> design = fit.design;
         try {
           set_parameter(design, key, x);
@@ -116,7 +159,7 @@ class BenchReader {
       for (const FreeParameter& before : fit.parameters) {
         if (before.parameter.key == key) p.refuse(p.at("key"), "key", fmt::format("{} is given twice", key));
       }
-      if (start) {
+      if (p.has("start")) {
         for (const std::string& assignment : overrides_) {
           if (!assignment.starts_with(key + "=")) continue;
           throw InputError("--set " + one_line(assignment, 120), 0, 0, key,
@@ -133,8 +176,10 @@ class BenchReader {
   void read_logs(BenchFit& fit) {
     const bool has_springs = fit.design.spring.stiffness || fit.design.spring.resonance;
     const auto read_one = [&](const TomlFields& l) {
-      const std::string_view keys[] = {"file",    "condition", "springs", "given",     "measured",
-                                       "voltage", "frequency", "columns", "separator", "decimal"};
+      const std::string_view keys[] = {"file",      "condition",       "springs",   "given",
+                                       "measured",  "voltage",         "frequency", "columns",
+                                       "separator", "decimal",         "triggered", "sampling_rate",
+                                       "burst",     "cycle_frequency", "cycles",    "unknown_zero"};
       l.known_keys(keys);
       const std::string file = l.needed_text("file", "the name of a CSV file");
       LogRequest request;
@@ -160,6 +205,7 @@ class BenchReader {
           request.measured.push_back(item.text);
         }
       }
+      read_waveform(l, fit, request);
       detail::StatedTable stated = detail::stated_table(l, "lift_mean");
       request.separator = stated.form.separator;
       request.decimal = stated.form.decimal;
@@ -175,10 +221,50 @@ class BenchReader {
       fit.logs.push_back(parse_log(text, path.string(), request, &understood));
       if (notes_) notes_->push_back(std::move(understood));
       check_columns(l, fit);
+      check_waveform(l, fit);
     };
     const auto sections = root_.tables("log");
     for (const TomlFields& l : sections) errors_.attempt([&] { read_one(l); });
     if (sections.empty()) root_.refuse("log", "missing: what was measured? Give [[log]] sections");
+  }
+
+  void read_waveform(const TomlFields& l, const BenchFit& fit, LogRequest& request) const {
+    const auto positive = [&](const char* key, const char* unit) {
+      const std::optional<double> value = l.quantity(key, unit);
+      if (value && !(*value > 0.0)) l.refuse(l.at(key), key, "must be > 0");
+      return value;
+    };
+    request.sampling_rate = positive("sampling_rate", "Hz");
+    request.burst = positive("burst", "s");
+    request.cycle_frequency = positive("cycle_frequency", "Hz");
+    request.cycles = l.count("cycles", 1);
+    request.alternating = drive_of(fit.design).alternating;
+    request.needs_point = true;
+    request.log.phase_known = l.boolean("triggered").value_or(false);
+    const TomlNode* zeros = l.node().find("unknown_zero");
+    if (!zeros) return;
+    if (zeros->kind != TomlNode::Kind::array) l.refuse(*zeros, "unknown_zero", zero_example);
+    for (const TomlNode& item : zeros->items) {
+      const ColumnName* column =
+          item.kind == TomlNode::Kind::text ? detail::column_named(item.text, waveform_quantities()) : nullptr;
+      if (!column) l.refuse(item, "unknown_zero", zero_example);
+      request.log.unknown_zeros.push_back(column->quantity.quantity);
+    }
+  }
+
+  /// What is stated of waveforms fits to what the file is.
+  void check_waveform(const TomlFields& l, const BenchFit& fit) const {
+    const BenchLog& log = fit.logs.back();
+    for (const WaveformQuantity q : log.unknown_zeros) {
+      const MeasuredQuantity wanted{true, {}, q};
+      if (std::find(log.columns.begin(), log.columns.end(), wanted) == log.columns.end()) {
+        l.refuse(l.at("unknown_zero"), "unknown_zero", fmt::format("the log has no waveform of {}", name_of(q)));
+      }
+    }
+    if (log.in_time) return;
+    for (const char* key : {"burst", "cycle_frequency", "triggered"}) {
+      if (l.has(key)) l.refuse(l.at(key), key, "is of a record in time, and the file has no times");
+    }
   }
 
   void check_columns(const TomlFields& l, const BenchFit& fit) const {
@@ -226,9 +312,23 @@ class BenchReader {
     return d;
   }
 
+  /// Whether every value of a column has the standard deviation that the log itself shows.
+  static bool shows_scatter(const BenchLog& log, std::size_t c) {
+    return std::all_of(log.rows.begin(), log.rows.end(), [&](const BenchRow& row) {
+      return std::isnan(row.values[c]) || (c < row.deviations.size() && std::isfinite(row.deviations[c]));
+    });
+  }
+  static bool shows_all_scatter(const BenchLog& log) {
+    for (std::size_t c = 0; c < log.columns.size(); ++c) {
+      if (!shows_scatter(log, c)) return false;
+    }
+    return true;
+  }
+
   void read_deviations(BenchFit& fit) const {
     const auto section = root_.table("deviation");
-    if (!section) {
+    const bool all_known = std::all_of(fit.logs.begin(), fit.logs.end(), shows_all_scatter);
+    if (!section && !all_known) {
       root_.refuse("deviation",
                    "missing section [deviation]: how well was each column measured? For example default = "
                    "{ relative = 0.01 }, or \"estimated\"");
@@ -236,19 +336,27 @@ class BenchReader {
     std::vector<std::string_view> keys = {"default"};
     for (const ColumnName& c : metric_columns()) keys.push_back(c.name);
     for (const ColumnName& c : waveform_quantities()) keys.push_back(c.name);
-    section->known_keys(keys);
-    for (const BenchLog& log : fit.logs) {
+    if (section) section->known_keys(keys);
+    for (BenchLog& log : fit.logs) {
       for (std::size_t c = 0; c < log.columns.size(); ++c) {
         const MeasuredQuantity& q = log.columns[c];
         const auto& known = q.waveform ? waveform_quantities() : metric_columns();
         const ColumnName& column =
             *std::find_if(known.begin(), known.end(), [&](const auto& k) { return k.quantity == q; });
-        if (section->has(column.name)) {
+        if (shows_scatter(log, c) && !(section && section->has(column.name))) {
+          fit.deviations.try_emplace(q, Deviation{Deviation::Kind::scatter, 0.0});
+          continue;
+        }
+        for (BenchRow& row : log.rows) {
+          if (c < row.deviations.size()) row.deviations[c] = absent;
+        }
+        if (section && section->has(column.name)) {
           fit.deviations[q] = deviation_at(*section, column.name, column.unit);
-        } else if (section->has("default")) {
+        } else if (section && section->has("default")) {
           fit.deviations[q] = deviation_at(*section, "default", "");
         } else {
-          section->refuse(column.name, fmt::format("missing: the standard deviation of this column of {}", log.file));
+          (section ? *section : root_)
+              .refuse(column.name, fmt::format("missing: the standard deviation of this column of {}", log.file));
         }
         if (fit.deviations[q].kind != Deviation::Kind::relative) continue;
         for (const BenchRow& row : log.rows) {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "files/bench_columns.hpp"
+#include "files/bench_record.hpp"
 #include "files/bench_table.hpp"
 #include "files/read_number.hpp"
 #include "files/text_encoding.hpp"
@@ -18,7 +19,8 @@
 namespace wingbeat {
 
 using detail::BenchTable, detail::ColumnName, detail::RecognisedColumn, detail::TableCell, detail::TableLine;
-using detail::metric_columns, detail::waveform_quantities;
+using detail::metric_columns, detail::record_columns, detail::waveform_columns;
+using Part = ColumnName::Part;
 
 namespace {
 
@@ -30,8 +32,6 @@ class LogReader {
     log_.waveform = request.given_value.has_value();
     if (log_.waveform) log_.given = *request.given;
     log_.file = file;
-    known_ = log_.waveform ? waveform_quantities() : metric_columns();
-    if (log_.waveform) known_.push_back({"crank_angle", "crank_angle", "rad", {}, true});
   }
 
   BenchLog read(std::string_view text) {
@@ -40,6 +40,9 @@ class LogReader {
     if (table.header.cells.empty())
       throw InputError(file_, 0, 0, "", "is empty; expected a header such as voltage_V,frequency_Hz,current_mean_mA");
     decimal_comma_ = table.decimal_comma;
+    record_ = request_.sampling_rate || has_times(table.header);
+    if (record_) log_.waveform = true;
+    known_ = record_ ? record_columns() : log_.waveform ? waveform_columns() : metric_columns();
     read_header(table.header);
     for (const TableLine& row : table.rows) read_row(row);
     if (log_.rows.empty()) throw InputError(file_, table.header.number, 1, "", "holds no rows");
@@ -53,15 +56,16 @@ class LogReader {
     notes_.separator = table.separator;
     notes_.decimal_comma = table.decimal_comma;
     notes_.remarks = table.remarks;
-    return log_;
+    return record_ ? detail::mean_cycles(log_, request_, notes_) : log_;
   }
 
   LogNotes notes() {
     for (std::size_t c = 0; c < columns_.size(); ++c) {
       const Column& column = columns_[c];
       notes_.columns.push_back({column.header, column.name ? column.name->name : "", column.unit, column.factor,
-                                column.name ? column.name->unit : "", int(c) == set_, column.used, column.renamed,
-                                column.values, column.min, column.max});
+                                column.name ? column.name->unit : "",
+                                int(c) == set_ || (column.name && column.name->part == Part::burst), column.used,
+                                column.renamed, column.values, column.min, column.max});
     }
     return notes_;
   }
@@ -79,6 +83,22 @@ class LogReader {
 
   [[noreturn]] void refuse(int line, int column, const std::string& key, const std::string& message) const {
     throw InputError(file_, line, column, key, message);
+  }
+
+  /// A column of times, unless it is to be ignored or only metrics are wanted.
+  bool has_times(const TableLine& header) const {
+    for (const std::string& wanted : request_.measured) {
+      if (!detail::column_named(wanted, detail::waveform_quantities())) return false;
+    }
+    for (const TableCell& cell : header.cells) {
+      const auto stated = std::find_if(request_.columns.begin(), request_.columns.end(),
+                                       [&](const auto& named) { return named.first == cell.text; });
+      const bool named = stated != request_.columns.end();
+      const RecognisedColumn found = named ? detail::recognise_stated(stated->second, cell.text, record_columns())
+                                           : detail::recognise(cell.text, record_columns());
+      if (found.column && found.column->name == "time") return true;
+    }
+    return false;
   }
 
   Column column_of(const TableCell& cell, int line) {
@@ -142,10 +162,23 @@ class LogReader {
                                       [&](const Column& c) { return c.name && c.name->name == name; });
       return found == columns_.end() ? -1 : int(found - columns_.begin());
     };
-    if (log_.waveform) {
+    if (record_) {
+      set_ = index_of("time");
+      if (set_ >= 0 && request_.sampling_rate) {
+        refuse(header.number, 1, "time", "[[log]] states a sampling_rate, and the file has times");
+      }
+    } else if (log_.waveform) {
       set_ = index_of("crank_angle");
+      if (set_ >= 0 && index_of("phase") >= 0) {
+        refuse(header.number, 1, "phase", "crank_angle and phase are both given: one is the place in the cycle");
+      }
       if (set_ < 0) {
-        refuse(header.number, 1, "crank_angle", "missing column: a waveform needs crank_angle_rad or crank_angle_deg");
+        set_ = index_of("phase");
+        log_.in_time = set_ >= 0;
+      }
+      if (set_ < 0) {
+        refuse(header.number, 1, "crank_angle",
+               "missing column: a waveform needs crank_angle_deg, phase_deg (equal steps in time) or time_s");
       }
     } else {
       const int voltage = index_of("voltage"), frequency = index_of("frequency");
@@ -175,9 +208,26 @@ class LogReader {
       columns_[c].used = wanted.empty() || std::any_of(wanted.begin(), wanted.end(), [&](const std::string& w) {
                            return detail::column_named(w, known_) == columns_[c].name;
                          });
-      if (columns_[c].used) log_.columns.push_back(columns_[c].name->quantity);
+      if (columns_[c].name->part == Part::burst) columns_[c].used = true;
+      if (columns_[c].used && columns_[c].name->part == Part::value) log_.columns.push_back(columns_[c].name->quantity);
     }
+    find_scatter(header);
     if (log_.columns.empty()) refuse(header.number, 1, "", "no measured column beside what was set");
+  }
+
+  /// Which columns hold the scatter of which others.
+  void find_scatter(const TableLine& header) {
+    scatter_of_.assign(columns_.size(), -1);
+    for (std::size_t c = 0; c < columns_.size(); ++c) {
+      if (!columns_[c].name || columns_[c].name->part != Part::scatter) continue;
+      const auto measured = std::find(log_.columns.begin(), log_.columns.end(), columns_[c].name->quantity);
+      columns_[c].used = measured != log_.columns.end();
+      if (columns_[c].used) {
+        scatter_of_[c] = int(measured - log_.columns.begin());
+      } else if (request_.measured.empty()) {
+        refuse(header.number, 1, columns_[c].name->name, "is the scatter of a column that the file has not");
+      }
+    }
   }
 
   /// NaN for a cell without a value.
@@ -197,6 +247,7 @@ class LogReader {
   void read_row(const TableLine& line) {
     BenchRow row;
     row.line = line.number;
+    if (first_line_ == 0) first_line_ = line.number;
     bool has_place = true;
     int missing = 0;
     for (std::size_t c = 0; c < line.cells.size(); ++c) {
@@ -207,8 +258,17 @@ class LogReader {
       if (int(c) == set_) {
         has_place = !std::isnan(x);
         check_place(x, cell, line.number, column);
-        if (log_.waveform) row.given = *request_.given_value;
+        if (log_.waveform) row.given = request_.given_value.value_or(absent);
         (log_.waveform ? row.crank_angle : row.given) = x;
+      } else if (column.name->part == Part::burst) {
+        if (!(std::abs(x) < 1e6)) refuse(line.number, cell.column, "burst", "expected the number of a burst");
+        row.burst = int(std::lround(x));
+      } else if (column.name->part == Part::scatter) {
+        if (!column.used) continue;
+        if (x <= 0.0)
+          refuse(line.number, cell.column, column.name->name, fmt::format("must be > 0, got {}", cell.text));
+        row.deviations.resize(log_.columns.size(), absent);
+        row.deviations[std::size_t(scatter_of_[c])] = x / std::sqrt(double(request_.cycles.value_or(1)));
       } else {
         if (x < 0.0 && !column.name->may_be_negative) {
           refuse(line.number, cell.column, column.name->name, fmt::format("must not be negative, got {}", cell.text));
@@ -227,11 +287,16 @@ class LogReader {
       return;
     }
     log_.values_left_out += missing;
+    if (request_.sampling_rate) {
+      row.given = request_.given_value.value_or(absent);
+      row.crank_angle = double(line.number - first_line_) / *request_.sampling_rate;
+    }
     log_.rows.push_back(row);
   }
 
   void check_place(double x, const TableCell& cell, int line, const Column& column) const {
     if (std::isnan(x)) return;
+    if (record_) return;
     if (log_.waveform && !(x >= 0.0 && x <= two_pi * (1.0 + 1e-12))) {
       refuse(line, cell.column, column.name->name, fmt::format("must lie between 0 and 360 deg, got {}", cell.text));
     }
@@ -255,7 +320,10 @@ class LogReader {
   LogNotes notes_;
   std::vector<ColumnName> known_;
   std::vector<Column> columns_;
+  std::vector<int> scatter_of_;  ///< by column: index of the measured column that it is the scatter of
   bool decimal_comma_ = false;
+  bool record_ = false;  ///< of signals in time
+  int first_line_ = 0;
   int set_ = -1;
 };
 

@@ -23,10 +23,36 @@ const char* role_of(const LogNotes::Column& c) {
   return c.name.empty() ? "not read" : c.is_set ? "set" : c.is_used ? "measured" : "not used";
 }
 
+const char* unit_of(const BenchLog& log) { return log.given == Given::voltage ? "V" : "Hz"; }
+
 std::string range_of(const LogNotes::Column& c) {
   if (c.values == 0) return "";
+  if (c.unit_si == "rad") {
+    return fmt::format("{:.4g} deg to {:.4g} deg", degrees_per_radian * c.min, degrees_per_radian * c.max);
+  }
   if (c.unit_si == "1") return fmt::format("{:.4g} to {:.4g}", c.min, c.max);
   return fmt::format("{} to {}", readable(c.min, c.unit_si), readable(c.max, c.unit_si));
+}
+
+/// The mean cycles of a record.
+std::string bursts_of(const BenchLog& log, const LogNotes& notes) {
+  if (notes.bursts.empty()) return "";
+  std::string text = fmt::format("\n  {:<6} {:>8} {:>8}  {:<24} {:>14}  {}\n", "burst", "samples", "cycles",
+                                 "frequency", "rate", log.given == Given::voltage ? "voltage" : "set frequency");
+  for (const LogNotes::Burst& b : notes.bursts) {
+    const std::string error =
+        std::isfinite(b.frequency_error) ? fmt::format(" +- {}", readable(b.frequency_error, "Hz")) : "";
+    std::string line =
+        fmt::format("  {:<6} {:>8} {:>8.1f}  {:<24} {:>14}  {}", b.number > 0 ? fmt::format("{}", b.number) : "-",
+                    b.samples, b.cycles, readable(b.frequency, "Hz") + error, fmt::format("{:+.3g} Hz/s", b.rate),
+                    std::isfinite(b.given) ? readable(b.given, unit_of(log)) : "not stated");
+    text += line + "\n";
+  }
+  if (notes.rows_in_short_burst > 0) {
+    text += fmt::format("  left out: {} behind the last whole burst\n",
+                        counted(std::size_t(notes.rows_in_short_burst), "row"));
+  }
+  return text;
 }
 
 }  // namespace
@@ -55,11 +81,13 @@ std::string text_readings(const std::vector<BenchReading>& readings) {
     text += fmt::format("  {}, cells between {}, decimal {}{}\n", notes.encoding, separator_name(notes.separator),
                         notes.decimal_comma ? "comma" : "point",
                         notes.remarks > 0 ? ", " + counted(std::size_t(notes.remarks), "line") + " of remarks" : "");
-    text += fmt::format("  {}{}\n", counted(log.rows.size(), "row"),
-                        notes.sorted ? ""
-                                     : fmt::format(", sorted by the {}", log.waveform                  ? "crank angle"
-                                                                         : log.given == Given::voltage ? "voltage"
-                                                                                                       : "frequency"));
+    text +=
+        fmt::format("  {}{}\n", counted(notes.bursts.empty() ? log.rows.size() : std::size_t(notes.rows_read), "row"),
+                    notes.sorted ? ""
+                                 : fmt::format(", sorted by the {}", !notes.bursts.empty()         ? "time"
+                                                                     : log.waveform                ? "crank angle"
+                                                                     : log.given == Given::voltage ? "voltage"
+                                                                                                   : "frequency"));
     if (const std::string missing = left_out(log); !missing.empty()) text += "  " + missing + "\n";
     std::size_t header = 6, name = 4;
     for (const LogNotes::Column& c : notes.columns) {
@@ -75,6 +103,7 @@ std::string text_readings(const std::vector<BenchReading>& readings) {
       while (line.back() == ' ') line.pop_back();
       text += line + "\n";
     }
+    text += bursts_of(log, notes);
   }
   return text;
 }
@@ -99,6 +128,25 @@ const Description<LogNotes::Column>& column_description() {
   return description;
 }
 
+const Description<LogNotes::Burst>& burst_description() {
+  using R = LogNotes::Burst;
+  static const Description<R> description =
+      Description<R>()
+          .always("line", "", "of its first row", &R::line)
+          .always("number", "", "of the burst; 0 where the record is one", &R::number)
+          .always("samples", "", "rows", &R::samples)
+          .always("cycles", "1", "", &R::cycles)
+          .always("frequency_hz", "Hz", "in its middle", &R::frequency)
+          .always("frequency_error_hz", "Hz", "standard error", &R::frequency_error)
+          .always("rate_hz_per_s", "Hz/s", "by which the frequency changes", &R::rate)
+          .always("given", "", "voltage [V] or frequency [Hz] that was set; null where not known", &R::given)
+          .always(
+              "correlation", "1",
+              "variance of a mean of neighbouring samples over that of independent ones, the largest of the columns",
+              &R::correlation);
+  return description;
+}
+
 const Description<BenchReading>& reading_description() {
   using R = BenchReading;
   static const Description<R> description =
@@ -113,6 +161,8 @@ const Description<BenchReading>& reading_description() {
           .always("values_left_out", "", "cells without a value", [](const R& r) { return r.log.values_left_out; })
           .always("rows_left_out", "", "lines of rows without what was set or measured",
                   [](const R& r) { return r.log.rows_left_out; })
+          .parts("bursts", "mean cycles of a record of signals", burst_description(),
+                 [](const R& r) { return r.notes.bursts; })
           .parts("columns", "in the order of the file", column_description(),
                  [](const R& r) { return r.notes.columns; });
   return description;

@@ -36,15 +36,50 @@ std::string short_number(double x, int digits = 4) {
   return std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "-";
 }
 
+/// Phases and zeros of logs stand apart: nobody asks for them, and there may be many.
+bool is_asked_for(const FittedParameter& p) { return p.of != FittedParameter::Of::log; }
+
+/// One row of the table of parameters.
+std::string parameter_row(const FittedParameter& p) {
+  if (!p.value) return fmt::format("{:<32}{:>11}  {}\n", p.key, "unknown", describe(p.undetermined));
+  if (!std::isfinite(p.standard_error)) {
+    return fmt::format("{:<32}{:>11.4e}{:>9}  {:^22}  {}{}\n", p.key, *p.value, "-", "-", p.unit,
+                       p.at_bound ? "  AT ITS BOUND" : "");
+  }
+  const bool profiled = std::isfinite(p.profile_lower_95) && std::isfinite(p.profile_upper_95);
+  return fmt::format("{:<32}{:>11.4e}{:>9.1e}  {:>10.3e} .. {:<9.3e}{} {}{}\n", p.key, *p.value, p.standard_error,
+                     profiled ? p.profile_lower_95 : p.lower_95, profiled ? p.profile_upper_95 : p.upper_95,
+                     profiled ? "" : "*", p.unit, p.at_bound ? "  AT ITS BOUND" : "");
+}
+
+/// Phases and zeros of the logs.
+std::string of_logs(const FitResult& r) {
+  std::string text;
+  for (const FittedParameter& p : r.parameters) {
+    if (is_asked_for(p)) continue;
+    if (text.empty()) text = "\nFitted beside them\n";
+    const bool angle = p.unit == "rad";
+    const double factor = angle ? degrees_per_radian : 1.0;
+    const std::string value = !p.value ? "unknown"
+                              : angle  ? fmt::format("{:.2f} deg", factor * *p.value)
+                                       : readable(*p.value, p.unit);
+    const std::string error = !p.value || !std::isfinite(p.standard_error) ? ""
+                              : angle ? fmt::format(" +- {:.2g} deg", factor * p.standard_error)
+                                      : " +- " + readable(p.standard_error, p.unit);
+    text += fmt::format("  {:<50} {}{}\n", p.key, value, error);
+  }
+  return text;
+}
+
 /// Correlations, what the data determine, and which condition contributes what.
 std::string identifiability(const FitResult& r) {
   std::string text;
   text += "\nCorrelation\n";
   for (std::size_t a = 0; a < r.parameters.size(); ++a) {
-    if (!r.parameters[a].value) continue;
+    if (!r.parameters[a].value || !is_asked_for(r.parameters[a])) continue;
     text += fmt::format("  {:<31}", r.parameters[a].key);
     for (std::size_t b = 0; b <= a; ++b) {
-      if (r.parameters[b].value) text += fmt::format("{:>7.2f}", r.correlation[a][b]);
+      if (r.parameters[b].value && is_asked_for(r.parameters[b])) text += fmt::format("{:>7.2f}", r.correlation[a][b]);
     }
     text += "\n";
   }
@@ -56,6 +91,7 @@ std::string identifiability(const FitResult& r) {
   for (const ConditionShare& c : r.conditions) text += fmt::format("{:>18}", c.name);
   text += "\n";
   for (std::size_t k = 0; k < r.parameters.size(); ++k) {
+    if (!is_asked_for(r.parameters[k])) continue;
     text += fmt::format("  {:<31}", r.parameters[k].key);
     for (const ConditionShare& c : r.conditions) text += fmt::format("{:>16.0f} %", 100.0 * c.share[k]);
     text += "\n";
@@ -226,25 +262,14 @@ std::string text_fit(const BenchFit& fit, const FitResult& r) {
   }
   text += fmt::format("\n{:<32}{:>11}{:>9}  {:^22}  unit\n", "Parameter", "value", "+-", "95 % interval");
   for (const FittedParameter& p : r.parameters) {
-    if (!p.value) {
-      text += fmt::format("{:<32}{:>11}  {}\n", p.key, "unknown", describe(p.undetermined));
-      continue;
-    }
-    if (!std::isfinite(p.standard_error)) {
-      text += fmt::format("{:<32}{:>11.4e}{:>9}  {:^22}  {}{}\n", p.key, *p.value, "-", "-", p.unit,
-                          p.at_bound ? "  AT ITS BOUND" : "");
-      continue;
-    }
-    const bool profiled = std::isfinite(p.profile_lower_95) && std::isfinite(p.profile_upper_95);
-    text += fmt::format("{:<32}{:>11.4e}{:>9.1e}  {:>10.3e} .. {:<9.3e}{} {}{}\n", p.key, *p.value, p.standard_error,
-                        profiled ? p.profile_lower_95 : p.lower_95, profiled ? p.profile_upper_95 : p.upper_95,
-                        profiled ? "" : "*", p.unit, p.at_bound ? "  AT ITS BOUND" : "");
+    if (is_asked_for(p)) text += parameter_row(p);
   }
   const bool starred = std::any_of(r.parameters.begin(), r.parameters.end(), [](const FittedParameter& p) {
-    return p.value && std::isfinite(p.standard_error) &&
+    return is_asked_for(p) && p.value && std::isfinite(p.standard_error) &&
            !(std::isfinite(p.profile_lower_95) && std::isfinite(p.profile_upper_95));
   });
   if (starred) text += "* from the standard error; the others from the profile\n";
+  text += of_logs(r);
 
   text += !r.misfit ? identifiability(r) : residuals_by_quantity(r);
   if (!r.estimated_deviations.empty()) {
@@ -322,6 +347,7 @@ std::string text_friction(std::span<const FrictionCandidate> candidates) {
 std::string fitted_vehicle_head(const BenchFit& fit, const FitResult& r, const std::string& made_by) {
   std::string text = fmt::format("# {}\n", one_line(made_by, 200));
   for (const FittedParameter& p : r.parameters) {
+    if (!is_asked_for(p)) continue;
     if (p.value) {
       text += fmt::format("# {} = {:.6g} +- {:.2g} {}\n", p.key, *p.value, p.standard_error, p.unit);
     } else {
@@ -339,7 +365,7 @@ std::string fitted_vehicle_head(const BenchFit& fit, const FitResult& r, const s
 std::string covariance_file(const FitResult& r, const std::string& vehicle_name, const std::string& made_by) {
   std::vector<std::size_t> known;
   for (std::size_t k = 0; k < r.parameters.size(); ++k) {
-    if (r.parameters[k].value) known.push_back(k);
+    if (r.parameters[k].value && r.parameters[k].of == FittedParameter::Of::vehicle) known.push_back(k);
   }
   std::string text =
       fmt::format("# {}\n# Covariance of the fitted parameters, SI units, normal approximation.\n\nvehicle = {}\n",
@@ -382,8 +408,65 @@ void plot_residuals(const BenchFit& fit, const FitResult& r, PlotFormat format, 
   std::string x = voltages && frequencies ? "voltage (V) or frequency (Hz)"
                   : voltages              ? "voltage (V)"
                                           : "frequency (Hz)";
-  if (waveforms) x += "; waveform: crank angle (deg)";
+  if (waveforms) x += "; waveform: crank angle, or phase in time (deg)";
   plot_panels(panels, {"Residuals of the fit", x, "measured − fitted, in standard deviations", 3.0}, format, file);
+}
+
+namespace {
+
+/// As figures show a waveform quantity: name, unit and the number of it in an SI unit.
+struct Shown {
+  const char *name, *unit;
+  double factor;
+};
+Shown shown(WaveformQuantity q) {
+  switch (q) {
+    case WaveformQuantity::crank_speed: return {"crank speed", "rad/s", 1.0};
+    case WaveformQuantity::current: return {"current", "mA", 1e3};
+    case WaveformQuantity::flapping_velocity: return {"flapping velocity", "rad/s", 1.0};
+    case WaveformQuantity::lift: return {"lift", "mN", 1e3};
+    case WaveformQuantity::rod_force: return {"rod force", "N", 1.0};
+    case WaveformQuantity::motor_torque: return {"motor torque", "mN m", 1e3};
+    case WaveformQuantity::stroke_angle: return {"stroke angle", "deg", degrees_per_radian};
+    case WaveformQuantity::pitch_angle: return {"pitch angle", "deg", degrees_per_radian};
+    case WaveformQuantity::voltage: return {"voltage", "V", 1.0};
+    case WaveformQuantity::balance_force: return {"balance reading", "mN", 1e3};
+  }
+  return {"", "", 1.0};
+}
+
+}  // namespace
+
+void plot_fitted_cycles(const BenchFit& fit, const FitResult& r, PlotFormat format, const std::filesystem::path& file) {
+  constexpr std::size_t max_panels = 12;
+  std::vector<CoursePanel> panels;
+  for (const FittedCycle& cycle : r.cycles) {
+    if (panels.size() == max_panels) break;
+    const BenchLog& log = fit.logs[cycle.log];
+    const BenchRow& head = log.rows[cycle.row];
+    const Shown as = shown(log.columns[cycle.column].quantity);
+    CoursePanel panel;
+    panel.title = fmt::format("{}: {}, {}", as.name, std::filesystem::path(log.file).filename().string(),
+                              given_text(fit, cycle.log, cycle.row));
+    panel.y = as.unit;
+    for (std::size_t k = 0; k < cycle.values.size(); ++k) {
+      panel.curve.emplace_back(double(k) / double(cycle.values.size() - 1), as.factor * cycle.values[k]);
+    }
+    for (const FitPoint& p : r.points) {
+      const BenchRow& row = log.rows[p.log == cycle.log ? p.row : cycle.row];
+      if (p.log != cycle.log || p.column != cycle.column || row.burst != head.burst) continue;
+      const double turns = (row.crank_angle + cycle.phase) / two_pi;
+      panel.points.push_back({turns - std::floor(turns), as.factor * p.measured, as.factor * p.deviation});
+    }
+    panels.push_back(std::move(panel));
+  }
+  const bool by_angle = std::none_of(r.cycles.begin(), r.cycles.end(), [](const auto& c) { return c.in_time; });
+  plot_courses(
+      panels,
+      {r.cycles.size() > panels.size() ? fmt::format("The first {} of {} waveforms", panels.size(), r.cycles.size())
+                                       : "Measured and fitted waveforms",
+       by_angle ? "crank angle / 360 deg" : "time in the cycle / period", ""},
+      format, file);
 }
 
 }  // namespace wingbeat

@@ -35,6 +35,7 @@ const Description<FittedParameter>& fitted_parameter_description() {
       Description<R>()
           .always("key", "", "of the vehicle file", &R::key)
           .always("unit", "", "", &R::unit)
+          .always("of", "", "vehicle, balance or log: what it is a number of", &R::of)
           .always("value", "", "null where the data do not determine it", &R::value)
           .always(
               "standard_error", "", "",
@@ -106,6 +107,22 @@ const Description<OfLogs<FitPoint>>& point_description() {
           .always(
               "deviation", "", "standard deviation, SI", [](const R& r) { return r.found.deviation; },
               schema::any_number);
+  return description;
+}
+
+const Description<OfLogs<FittedCycle>>& cycle_description() {
+  using R = OfLogs<FittedCycle>;
+  static const Description<R> description =
+      Description<R>()
+          .always("row", "", "file and line of its first row",
+                  [](const R& r) { return detail::row_name(r.fit, r.found.log, r.found.row); })
+          .always("quantity", "", "",
+                  [](const R& r) { return std::string(name_of(r.fit.logs[r.found.log].columns[r.found.column])); })
+          .always("in_time", "", "values are equally spaced in time; else by the crank angle",
+                  [](const R& r) { return r.found.in_time; })
+          .always("phase_rad", "rad", "of the cycle where the log's phase is 0",
+                  [](const R& r) { return r.found.phase; })
+          .always("values", "", "SI, over the cycle, both ends included", [](const R& r) { return r.found.values; });
   return description;
 }
 
@@ -183,6 +200,8 @@ const Description<FitFound>& fit_description() {
                  [](const R& r) { return of_logs(r.fit, r.result.unreached); })
           .parts("points", "measured values beside those of the fitted model", point_description(),
                  [](const R& r) { return of_logs(r.fit, r.result.points); })
+          .parts("cycles", "the fitted model's courses of the waveforms", cycle_description(),
+                 [](const R& r) { return of_logs(r.fit, r.result.cycles); })
           .always(
               "friction", "", "friction laws, best first; null unless compared",
               [](const R& r) {

@@ -7,15 +7,7 @@
 #include "report/text_width.hpp"
 
 namespace wingbeat {
-namespace {
 
-constexpr double key_gap = 0.16, line_sample = 0.2, point_sample = 0.08, sample_gap = 0.03;
-/// Size of the labels of axes in gnuplot's drawings [pt].
-constexpr double mark_size = 7.5;
-
-double sample_width(const KeyEntry& e) { return (e.line.empty() ? point_sample : line_sample) + sample_gap; }
-
-/// 1, 2, 2.5, 5 or 10 times a power of ten, at least `rough`.
 double round_step(double rough) {
   const double decade = std::pow(10.0, std::floor(std::log10(rough)));
   for (const double nice : {1.0, 2.0, 2.5, 5.0}) {
@@ -23,6 +15,14 @@ double round_step(double rough) {
   }
   return 10.0 * decade;
 }
+
+namespace {
+
+constexpr double key_gap = 0.16, line_sample = 0.2, point_sample = 0.08, sample_gap = 0.03;
+/// Size of the labels of axes in gnuplot's drawings [pt].
+constexpr double mark_size = 7.5;
+
+double sample_width(const KeyEntry& e) { return (e.line.empty() ? point_sample : line_sample) + sample_gap; }
 
 std::string mark_label(double value, double step) {
   if (std::abs(value) < 1e-6 * step) return "0";

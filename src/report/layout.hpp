@@ -27,6 +27,9 @@ std::vector<std::string> remark_lines(const std::string& all, double page_width)
 double remarks_height(const std::vector<std::string>& lines);
 void draw_remarks(Figure& figure, const std::vector<std::string>& lines);
 
+/// 1, 2, 2.5, 5 or 10 times a power of ten, at least `rough`: a distance of tics.
+double round_step(double rough);
+
 /// One entry of a key: a sample of a line, a point or a filled box, as gnuplot writes them, and a name.
 struct KeyEntry {
   std::string name, line, point, fill;

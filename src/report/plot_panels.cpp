@@ -12,6 +12,18 @@
 #include "report/text_width.hpp"
 
 namespace wingbeat {
+namespace {
+
+/// Distance of the tics of a panel that is an inch high.
+double tick_step(const CoursePanel& panel) {
+  double least = HUGE_VAL, largest = -HUGE_VAL;
+  const auto extend = [&](double y) { least = std::min(least, y), largest = std::max(largest, y); };
+  for (const auto& [x, y] : panel.curve) extend(y);
+  for (const CoursePoint& p : panel.points) extend(p.y);
+  return round_step(largest > least ? (largest - least) / 4.0 : 1.0);
+}
+
+}  // namespace
 
 void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, PlotFormat format,
                  const std::filesystem::path& file) {
@@ -73,6 +85,47 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
       plots += fmt::format(", {} using 1:2 with points {}", data_name(p, s), point(n));
     }
     figure.add("plot {}\n", plots);
+  }
+  figure.add("unset multiplot\nunset output\n");
+  run_gnuplot(figure.script(), file);
+}
+
+void plot_courses(std::span<const CoursePanel> panels, const PointAxes& axes, PlotFormat format,
+                  const std::filesystem::path& file) {
+  if (panels.empty()) throw std::runtime_error("nothing to plot: the fitted model reaches no waveform");
+  constexpr double left = 0.16, right = 0.96;
+  constexpr const char* points = "pt 6 ps 0.4 lw 0.8 lc rgb '#000000'";
+  const std::string curve = style::stroke(style::grey, style::solid, 1.6);
+  const Key key({point_key("measured, with standard deviation", points), line_key("fitted", curve)},
+                (right - left) * format.width);
+  const double head = 0.1 + key.height(), foot = 0.5, each = 1.05, gap = 0.42;
+  const double inches = head + foot + (each + gap) * double(panels.size());
+  Figure figure(format, inches);
+  for (std::size_t p = 0; p < panels.size(); ++p) {
+    figure.add("$c{} << END\n", p);
+    for (const auto& [x, y] : panels[p].curve) figure.add("{} {}\n", x, y);
+    figure.add("END\n$p{} << END\n", p);
+    for (const CoursePoint& point : panels[p].points) figure.add("{} {} {}\n", point.x, point.y, point.deviation);
+    figure.add("END\n");
+  }
+  figure.add(
+      "set multiplot\nset lmargin at screen {}\nset rmargin at screen {}\nset offsets 0, 0, graph 0.06, graph 0.06\n"
+      "set xrange [0:1]\nset xtics 0.25\nset errorbars 0\n",
+      left, right);
+  for (std::size_t p = 0; p < panels.size(); ++p) {
+    if (p > 0) figure.next_panel();
+    const double top = 1.0 - (head + gap + (each + gap) * double(p)) / inches;
+    figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", top, top - each / inches);
+    figure.text(panels[p].title, 7.5, fmt::format("screen {},{} left", left, top + 0.09 / inches));
+    axis_title(figure, panels[p].y, 7.5, inches - 2.0 * page_margin, left - 0.44 / format.width,
+               top - 0.5 * each / inches);
+    if (p == 0) {
+      page_title(figure, axes.title, 0.12);
+      figure.text(axes.x, 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.09 / inches));
+      key.draw(figure, left * format.width, 0.25);
+    }
+    figure.add("set ytics {}\n", tick_step(panels[p]));
+    figure.add("plot $c{0} using 1:2 with lines {1}, $p{0} using 1:2:3 with yerrorbars {2}\n", p, curve, points);
   }
   figure.add("unset multiplot\nunset output\n");
   run_gnuplot(figure.script(), file);

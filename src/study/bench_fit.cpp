@@ -6,6 +6,7 @@
 #include <set>
 
 #include "study/bench_fitter.hpp"
+#include "study/bench_unknowns.hpp"
 #include "study/fit_covariance.hpp"
 #include "study/fit_identifiability.hpp"
 #include "study/fit_misfit.hpp"
@@ -41,6 +42,30 @@ int on_copies(const BenchFitter& fitter, std::size_t count, const char* what, co
   return evaluations;
 }
 
+/// Instants of the computed cycles that a result has.
+constexpr int drawn_instants = 181;
+
+/// The strongest component of signals may be twice the flapping frequency, or more: of a current whose half-strokes are
+/// alike. Throws where a log's frequency is a multiple of the model's, or a fraction.
+void check_frequencies(const BenchModel& bench) {
+  for (std::size_t o = 0; o < bench.observations().size(); ++o) {
+    const Observation& at_o = bench.observations()[o];
+    const BenchLog& log = bench.fit().logs[at_o.log];
+    if (!log.in_time || log.frequency_stated || at_o.quantity.waveform || at_o.quantity.metric != Metric::frequency ||
+        !bench.predictions()[at_o.point].reached) {
+      continue;
+    }
+    const double ratio = at_o.measured / bench.fitted()[o];
+    const double nearest = ratio > 1.0 ? std::round(ratio) : 1.0 / std::round(1.0 / ratio);
+    if (nearest == 1.0 || std::abs(ratio / nearest - 1.0) > 0.15) continue;
+    throw ParameterError(
+        "log.cycle_frequency",
+        format("the signals of %s repeat at %.4g Hz, and the vehicle with its start values flaps at %.4g Hz: equal "
+               "half-strokes, or equal cycles of another kind, may hide the cycle; state about which frequency it has",
+               log.file.c_str(), at_o.measured, bench.fitted()[o]));
+  }
+}
+
 }  // namespace
 
 BenchFit on_bench_supply(BenchFit fit) {
@@ -69,6 +94,7 @@ void check_fit(const BenchFit& fit) {
       throw ParameterError(p.parameter.key, format("the start %.6g does not lie within the bounds %.6g to %.6g [%s]",
                                                    p.start, p.lower, p.upper, p.parameter.unit.c_str()));
     }
+    if (p.of_bench) continue;
     for (const double x : {p.lower, p.upper, p.start}) {
       Design<double> design = fit.design;
       if (!p.parameter.set(design, x)) throw ParameterError(p.parameter.key, "has no place in this vehicle");
@@ -85,9 +111,11 @@ void check_fit(const BenchFit& fit) {
   }
   // Alternatives replace each other: two of them cannot both be free.
   Design<double> all = fit.design;
-  for (const FreeParameter& p : fit.parameters) p.parameter.set(all, p.start);
   for (const FreeParameter& p : fit.parameters) {
-    if (p.parameter.value(all) != p.start) {
+    if (!p.of_bench) p.parameter.set(all, p.start);
+  }
+  for (const FreeParameter& p : fit.parameters) {
+    if (!p.of_bench && p.parameter.value(all) != p.start) {
       throw ParameterError(p.parameter.key, "another free parameter takes its place in the vehicle");
     }
   }
@@ -96,6 +124,7 @@ void check_fit(const BenchFit& fit) {
         "supply.type",
         "bench data are fitted with a constant supply, or with a battery, for which the bench's supply stands in");
   }
+  check_bench(fit);
   for (const BenchLog& log : fit.logs) {
     for (const MeasuredQuantity& q : log.columns) {
       if (q.waveform) continue;
@@ -115,13 +144,16 @@ void check_fit(const BenchFit& fit) {
   }
 }
 
-FitResult run_fit(const BenchFit& fit, FitPurpose purpose, const FitProgress& progress, const ForEach& for_each) {
-  check_fit(fit);
+FitResult run_fit(const BenchFit& given, FitPurpose purpose, const FitProgress& progress, const ForEach& for_each) {
+  check_fit(given);
+  const BenchFit fit = with_bench_unknowns(given);
   FitResult result;
   BenchFitter fitter(fit, for_each);
   BenchModel& bench = fitter.bench();
   std::vector<double> start;
   for (const FreeParameter& p : fit.parameters) start.push_back(p.start);
+  start = bench.aligned(start);
+  check_frequencies(bench);
 
   // Parameters without any influence at the start stay out of the fit: the rest would drag them along.
   bench.evaluate(start, true);
@@ -136,10 +168,11 @@ FitResult run_fit(const BenchFit& fit, FitPurpose purpose, const FitProgress& pr
     std::vector<double> x = start;
     for (const std::size_t k : free) {
       if (n == 0) break;
+      if (fit.parameters[k].of_bench && fit.parameters[k].of_bench->kind >= BenchUnknown::Kind::phase) continue;
       x[k] = fit.parameters[k].lower +
              samples(std::uint64_t(n - 1), k) * (fit.parameters[k].upper - fit.parameters[k].lower);
     }
-    outcomes[n] = own.solve(x, free);
+    outcomes[n] = own.solve(n == 0 ? x : own.bench().aligned(x), free);
   });
   BenchFitter::Outcome best = outcomes.front();
   std::vector<double> costs;
@@ -186,6 +219,7 @@ FitResult run_fit(const BenchFit& fit, FitPurpose purpose, const FitProgress& pr
     result.chi_square += fitter.residual(o) * fitter.residual(o);
     log_deviations += 2.0 * std::log(fitter.deviations()[o]);
   }
+  result.cycles = bench.cycles(drawn_instants);
   for (std::size_t n = 0; n < bench.points().size(); ++n) {
     const Prediction& p = bench.predictions()[n];
     if (!p.reached)
@@ -205,6 +239,8 @@ FitResult run_fit(const BenchFit& fit, FitPurpose purpose, const FitProgress& pr
   if (fit.profiles && !result.misfit) {
     std::vector<std::size_t> determined;
     for (const std::size_t f : free) {
+      const auto& b = fit.parameters[f].of_bench;
+      if (b && b->kind >= BenchUnknown::Kind::phase) continue;  // numbers of the log, of no further use
       if (result.parameters[f].value) determined.push_back(f);
     }
     std::vector<ProfileSide> sides(2 * determined.size());
@@ -220,14 +256,21 @@ FitResult run_fit(const BenchFit& fit, FitPurpose purpose, const FitProgress& pr
   return result;
 }
 
-const char* name_of(WaveformQuantity q) {
-  constexpr const char* names[] = {"crank_speed", "current", "flapping_velocity", "lift", "rod_force", "motor_torque"};
-  return names[int(q)];
-}
-const char* unit_of(WaveformQuantity q) {
-  constexpr const char* units[] = {"rad/s", "A", "rad/s", "N", "N", "N m"};
-  return units[int(q)];
-}
+namespace {
+
+struct WaveformName {
+  const char *name, *unit;
+};
+constexpr WaveformName waveform_names[] = {
+    {"crank_speed", "rad/s"}, {"current", "A"},        {"flapping_velocity", "rad/s"}, {"lift", "N"},
+    {"rod_force", "N"},       {"motor_torque", "N m"}, {"stroke_angle", "rad"},        {"pitch_angle", "rad"},
+    {"voltage", "V"},         {"balance_force", "N"}};
+static_assert(std::size(waveform_names) == waveform_quantity_count);
+
+}  // namespace
+
+const char* name_of(WaveformQuantity q) { return waveform_names[int(q)].name; }
+const char* unit_of(WaveformQuantity q) { return waveform_names[int(q)].unit; }
 std::string name_of(const MeasuredQuantity& q) {
   if (q.waveform) return std::string("instantaneous ") + name_of(q.quantity);
   return metric_info(q.metric).key;

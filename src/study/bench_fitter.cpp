@@ -168,7 +168,7 @@ double BenchFitter::renew_deviations(const std::vector<std::size_t>& free) {
   const auto& observations = bench_.observations();
   std::map<MeasuredQuantity, std::vector<double>> errors;
   for (std::size_t o = 0; o < observations.size(); ++o) {
-    if (!bench_.predictions()[observations[o].point].reached) continue;
+    if (!bench_.predictions()[observations[o].point].reached || std::isfinite(observations[o].deviation)) continue;
     errors[observations[o].quantity].push_back(bench_.fitted()[o] - observations[o].measured);
   }
   std::map<MeasuredQuantity, double> next_estimates;
@@ -181,6 +181,7 @@ double BenchFitter::renew_deviations(const std::vector<std::size_t>& free) {
   }
   double change = 0.0;
   for (std::size_t o = 0; o < observations.size(); ++o) {
+    if (std::isfinite(observations[o].deviation)) continue;  // as its log shows it
     const Deviation& d = deviation_of(observations[o].quantity);
     double next = deviations_[o];
     if (d.kind == Deviation::Kind::relative && bench_.predictions()[observations[o].point].reached) {
@@ -208,10 +209,15 @@ void BenchFitter::first_deviations() {
     const Deviation& d = deviation_of(observations[o].quantity);
     const auto [sum, count] = squares[observations[o].quantity];
     const double typical = std::sqrt(sum / count);
+    if (std::isfinite(observations[o].deviation)) {
+      deviations_[o] = observations[o].deviation;
+      continue;
+    }
     switch (d.kind) {
       case Deviation::Kind::absolute: deviations_[o] = d.value; break;
       case Deviation::Kind::relative: deviations_[o] = d.value * std::abs(observations[o].measured); break;
       case Deviation::Kind::estimated: deviations_[o] = 0.02 * (typical > 0.0 ? typical : 1.0); break;
+      case Deviation::Kind::scatter: break;
     }
   }
 }

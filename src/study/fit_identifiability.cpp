@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "study/bench_unknowns.hpp"
 #include "study/fit_covariance.hpp"
 
 namespace wingbeat {
@@ -15,7 +16,10 @@ using FindingKind = FitFinding::Kind;
 constexpr double free_error = 1.0, rough_error = 0.2;
 
 /// Scale of relative changes of a parameter.
-double scale_of(const FreeParameter& p, double value) { return value != 0.0 ? std::abs(value) : p.upper - p.lower; }
+double scale_of(const FreeParameter& p, double value) {
+  if (p.of_bench && p.of_bench->kind >= BenchUnknown::Kind::phase) return unknown_scale(p);
+  return value != 0.0 ? std::abs(value) : p.upper - p.lower;
+}
 
 /// The information of some observations in relative parameter changes.
 Eigen::MatrixXd information(const BenchFitter& fitter, const FitNoise& noise, const std::vector<double>& scales,
@@ -128,6 +132,9 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
     FittedParameter f;
     f.key = p.parameter.key;
     f.unit = p.parameter.unit;
+    if (p.of_bench) {
+      f.of = p.of_bench->kind >= BenchUnknown::Kind::phase ? FittedParameter::Of::log : FittedParameter::Of::balance;
+    }
     f.kept = x[k];
     const double range = p.upper - p.lower;
     f.at_bound = x[k] - p.lower < 1e-6 * range || p.upper - x[k] < 1e-6 * range;
@@ -212,12 +219,15 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
   findings.insert(findings.end(), free_directions.begin(), free_directions.end());
   findings.insert(findings.end(), rough_directions.begin(), rough_directions.end());
   if (free_directions.empty() && m > 0) {
-    const auto known = keys_where([&](std::size_t k) { return result.parameters[k].value.has_value(); });
+    const auto known = keys_where([&](std::size_t k) {
+      return result.parameters[k].value.has_value() && result.parameters[k].of != FittedParameter::Of::log;
+    });
     findings.push_back({.kind = FindingKind::determined, .parameters = known});
     FitFinding alike{.kind = FindingKind::most_correlated, .numbers = {0.0}};
     for (std::size_t a = 0; a < std::size_t(count); ++a) {
       for (std::size_t b = 0; b < a; ++b) {
         const double r = result.correlation[a][b];
+        if (result.parameters[a].of == FittedParameter::Of::log) continue;  // the logs' own stand behind the others
         if (!(std::abs(r) > std::abs(alike.numbers[0]))) continue;
         alike.numbers[0] = r;
         alike.parameters = {fit.parameters[b].parameter.key, fit.parameters[a].parameter.key};
@@ -231,7 +241,7 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
     FitFinding wider{.kind = FindingKind::narrowed_by, .condition = c.name};
     for (std::size_t k = 0; k < std::size_t(count); ++k) {
       const FittedParameter& p = result.parameters[k];
-      if (!p.value) continue;
+      if (!p.value || p.of == FittedParameter::Of::log) continue;
       if (!std::isfinite(c.error_without[k])) {
         lost.parameters.push_back(p.key);
       } else if (c.error_without[k] > 2.0 * p.standard_error) {

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "study/bench_fitter.hpp"
+#include "study/bench_unknowns.hpp"
 #include "study/fit_stages.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/study/run.hpp"
@@ -12,7 +13,9 @@ namespace {
 
 double mean_friction_torque(const BenchFit& fit, double& speed) {
   Design<double> design = fit.design;
-  for (const FreeParameter& p : fit.parameters) p.parameter.set(design, p.start);
+  for (const FreeParameter& p : fit.parameters) {
+    if (!p.of_bench) p.parameter.set(design, p.start);
+  }
   double torque = 0.0;
   int count = 0;
   speed = 0.0;
@@ -94,10 +97,18 @@ std::vector<FrictionCandidate> compare_friction(const BenchFit& given,
       const FitResult without = run_fit(rest, FitPurpose::comparison, {}, for_each);
       // What the rest cannot determine at all comes from the whole: it is the friction law that is on trial.
       std::vector<double> x;
-      for (std::size_t k = 0; k < without.parameters.size(); ++k) {
+      for (std::size_t k = 0; k < trial.parameters.size(); ++k) {
         x.push_back(without.parameters[k].value ? *without.parameters[k].value : candidate.result.parameters[k].kept);
       }
+      // Phases and zeros of the logs left out are their own.
+      left = with_bench_unknowns(left);
+      std::vector<std::size_t> of_logs;
+      for (std::size_t k = x.size(); k < left.parameters.size(); ++k) {
+        of_logs.push_back(k);
+        x.push_back(left.parameters[k].start);
+      }
       BenchFitter predictor(left, for_each);
+      x = predictor.solve(predictor.bench().aligned(x), of_logs).x;
       predictor.bench().evaluate(x, false);
       double own_squares = 0.0;
       int own_count = 0;

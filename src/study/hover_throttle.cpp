@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 
 namespace wingbeat::detail {

@@ -31,6 +31,42 @@ TEST_F(Fit, WritesAVehicleThatRunsAndItsCovariance) {
   EXPECT_THAT(read(path("residuals.svg")), HasSubstr("wingless"));
 }
 
+// Signals in time on a balance: the truth of data/bench/waveforms.toml comes back.
+TEST_F(Fit, SignalsInTimeGiveVehicleAndBalance) {
+  const std::string waveforms = data + "/bench/waveforms.toml";
+  const Outcome shown = run({"read-bench", waveforms});
+  EXPECT_EQ(shown.status, 0) << shown.err;
+  for (const char* part : {"1200 rows", "burst", "Hz/s", "600", "2.500 V"}) EXPECT_THAT(shown.out, HasSubstr(part));
+  const Outcome o =
+      run({"fit", waveforms, "--no-profiles", "-o", path("fitted.toml"), "--plot-cycles", path("cycles.svg")});
+  EXPECT_EQ(o.status, 0) << o.err;
+  for (const char* part : {"balance.stiffness", "Fitted beside them", "phase of waveforms.csv, burst 2",
+                           "zero of stroke_angle in waveforms.csv"}) {
+    EXPECT_THAT(o.out, HasSubstr(part)) << o.out;
+  }
+  std::istringstream lines(o.out);
+  for (std::string line; std::getline(lines, line);) EXPECT_LE(line.size(), 90U) << line;
+  EXPECT_THAT(read(path("cycles.svg")), HasSubstr("balance reading"));
+  EXPECT_THAT(read(path("fitted.covariance.toml")), Not(HasSubstr("balance")));
+  const Json json = run({"fit", waveforms, "--no-profiles", "--json"}).json();
+  EXPECT_EQ(json["cycles"].size(), 6U);
+  const std::map<std::string, double> truth = {{"friction.radius", 2.5e-3},
+                                               {"aerodynamics.pitch_coefficient", 5e-3},
+                                               {"motor.inertia", 1.5e-7},
+                                               {"balance.stiffness", 1700.0},
+                                               {"balance.damping", 0.5}};
+  int compared = 0;
+  for (const Json& p : json["parameters"]) {
+    const auto found = truth.find(p["key"].get<std::string>());
+    if (found == truth.end()) continue;
+    ++compared;
+    EXPECT_NEAR(p["value"].get<double>(), found->second, 4.0 * p["standard_error"].get<double>()) << found->first;
+    EXPECT_LT(p["standard_error"].get<double>(), 0.1 * found->second) << found->first;
+  }
+  EXPECT_EQ(compared, 5);
+  EXPECT_EQ(run({"fit", bench, "--plot-cycles", path("none.svg")}).status, 2);
+}
+
 TEST_F(Fit, ReadBenchShowsWhatWasUnderstood) {
   const Outcome o = run({"read-bench", data + "/bench/spreadsheet.csv"});
   EXPECT_EQ(o.status, 0) << o.err;

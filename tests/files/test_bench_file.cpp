@@ -58,8 +58,10 @@ TEST(BenchLog, WaveformsHaveACrankAngle) {
   EXPECT_TRUE(log.waveform);
   EXPECT_NEAR(log.rows[1].crank_angle, pi / 2.0, 1e-15);
   EXPECT_NEAR(log.rows[1].values[1], 1200.0 * pi / 30.0, 1e-9);
-  EXPECT_EQ(log_error("current_mA\n180\n", request),
-            "air.csv:1:1: crank_angle: missing column: a waveform needs crank_angle_rad or crank_angle_deg");
+  EXPECT_EQ(
+      log_error("current_mA\n180\n", request),
+      "air.csv:1:1: crank_angle: missing column: a waveform needs crank_angle_deg, phase_deg (equal steps in time) or "
+      "time_s");
 }
 
 TEST(BenchLog, MeasuredRestrictsTheColumns) {
@@ -285,6 +287,133 @@ TEST_F(BenchFile, SaysHowAFileIsWritten) {
                        "columns = { Spannung = \"voltage_V\", Frequenz = \"frequency_Hz\", "
                        "\"Auftrieb (mN)\" = \"lift_mean\", Notiz = \"remarks\" }\n"),
               HasSubstr("columns names \"remarks\", which is no quantity"));
+}
+
+/// Signals of 21 Hz over half a second in two bursts, in columns of mA and deg.
+std::string record_text(const char* header, bool times, bool bursts) {
+  std::string text = std::string(header) + "\n";
+  for (int burst = 0; burst < 2; ++burst) {
+    for (int n = 0; n < 300; ++n) {
+      const double t = n / 600.0, turns = (21.0 + burst) * t;
+      const std::string place = (bursts ? std::to_string(burst + 3) + "," : "") +
+                                (times ? std::to_string(1e3 * (t + 0.5 * burst)) + "," : "");
+      const double current = 200.0 + 30.0 * std::cos(two_pi * turns) + 20.0 * std::sin(2.0 * two_pi * turns);
+      text += place + std::to_string(2.9 + 0.1 * burst) + "," + std::to_string(current) + "," +
+              std::to_string(40.0 * std::sin(two_pi * turns)) + "\n";
+    }
+  }
+  return text;
+}
+
+TEST_F(BenchFile, RecordsOfSignalsBecomeMeanCycles) {
+  const std::string of_record = "[[log]]\nfile = \"signals.csv\"\ncondition = \"air\"\n";
+  write("signals.csv", record_text("burst,Time (ms),U (V),I (mA),stroke_deg", true, true));
+  write("bench.toml", head + parameter + of_record + "unknown_zero = [\"stroke_angle\"]\n");
+  std::vector<LogNotes> notes;
+  const BenchFit fit = read_bench(folder_ / "bench.toml", {}, &notes);
+  const BenchLog& log = fit.logs.at(0);
+  EXPECT_TRUE(log.waveform && log.in_time && !log.phase_known && !log.frequency_stated);
+  ASSERT_EQ(log.columns.size(), 3U);
+  EXPECT_EQ(name_of(log.columns[0]), "instantaneous current");
+  EXPECT_EQ(name_of(log.columns[1]), "instantaneous stroke_angle");
+  EXPECT_EQ(name_of(log.columns[2]), "frequency_hz");
+  ASSERT_EQ(notes[0].bursts.size(), 2U);
+  EXPECT_EQ(notes[0].bursts[1].line, 302);
+  EXPECT_NEAR(notes[0].bursts[1].frequency, 22.0, 1e-4);
+  EXPECT_NEAR(notes[0].bursts[0].given, 2.9, 1e-9);
+  EXPECT_NEAR(log.rows.front().values[2], 21.0, 1e-4);
+  EXPECT_TRUE(std::isnan(log.rows[1].values[2]));
+  EXPECT_NEAR(log.rows.back().given, 3.0, 1e-9);
+  EXPECT_EQ(log.rows.front().burst, 3);
+  for (const BenchRow& row : log.rows) {
+    const double turns = row.crank_angle / two_pi;
+    EXPECT_NEAR(row.values[0], 0.2 + 0.03 * std::cos(two_pi * turns) + 0.02 * std::sin(2.0 * two_pi * turns), 1e-6);
+    EXPECT_GT(row.deviations[0], 0.0);
+  }
+  EXPECT_EQ(fit.deviations.at({true, {}, WaveformQuantity::current}).kind, Deviation::Kind::scatter);
+
+  // Without times and bursts, cut by duration; stated deviations replace those of the scatter.
+  write("signals.csv", record_text("U (V),I (mA),stroke_deg", false, false));
+  write("bench.toml", head + parameter + "[deviation]\ncurrent = { absolute = \"1 mA\" }\n" + of_record +
+                          "sampling_rate = \"600 Hz\"\nburst = \"0.5 s\"\ntriggered = true\n");
+  const BenchFit stated = read_bench(folder_ / "bench.toml");
+  EXPECT_EQ(stated.logs[0].rows.back().burst, 2);
+  EXPECT_TRUE(stated.logs[0].phase_known);
+  EXPECT_TRUE(std::isnan(stated.logs[0].rows[0].deviations[0]));
+  EXPECT_EQ(stated.deviations.at({true, {}, WaveformQuantity::current}).value, 1e-3);
+  EXPECT_EQ(stated.deviations.at({true, {}, WaveformQuantity::stroke_angle}).kind, Deviation::Kind::scatter);
+}
+
+// A direct drive under a sine whose frequency rises: each burst has its amplitude and frequency from the voltage.
+TEST_F(BenchFile, BurstsOfARampHaveTheirOwnFrequency) {
+  std::string text = "t [s];U [V];I [mA]\n";
+  const double rate = 2.0;
+  for (int n = 0; n <= 6000; ++n) {
+    const double t = n / 2000.0, turns = (20.0 + 0.5 * rate * t) * t;
+    text += std::to_string(t) + ";" + std::to_string(2.5 * std::sin(two_pi * turns)) + ";" +
+            std::to_string(80.0 * std::sin(two_pi * turns - 0.4)) + "\n";
+  }
+  write("signals.csv", text);
+  write(
+      "bench.toml",
+      "[bench]\nvehicle = \"two-wing-direct.toml\"\n[[parameter]]\nkey = \"motor.viscous_damping\"\nlower = 0\nupper "
+      "= \"1e-4 N m s/rad\"\n[[log]]\nfile = \"signals.csv\"\ncondition = \"air\"\nsprings = true\nburst = \"1 s\"\n");
+  std::vector<LogNotes> notes;
+  const BenchFit fit = read_bench(folder_ / "bench.toml", {}, &notes);
+  ASSERT_EQ(notes[0].bursts.size(), 3U);
+  for (int n = 0; n < 3; ++n) {
+    EXPECT_NEAR(notes[0].bursts[std::size_t(n)].frequency, 20.0 + rate * (n + 0.5), 2e-3) << n;
+    EXPECT_NEAR(notes[0].bursts[std::size_t(n)].rate, rate, 1e-2) << n;
+    EXPECT_NEAR(notes[0].bursts[std::size_t(n)].given, 2.5, 2.5e-3) << n;
+  }
+  const BenchLog& log = fit.logs.at(0);
+  ASSERT_EQ(log.columns.size(), 2U);  // the voltage shows the phase
+  EXPECT_NEAR(log.rows.back().drive_frequency, 25.0, 2e-3);
+}
+
+TEST_F(BenchFile, AveragedWaveformsHaveTheirScatter) {
+  write("cycle.csv", "phase_deg,current_mA,current_std_mA\n0,200,4\n90,210,8\n180,190,4\n");
+  write("bench.toml",
+        head + parameter + "[[log]]\nfile = \"cycle.csv\"\ncondition = \"air\"\nvoltage = \"3 V\"\ncycles = 16\n");
+  const BenchFit fit = read_bench(folder_ / "bench.toml");
+  ASSERT_EQ(fit.logs[0].columns.size(), 1U);
+  EXPECT_TRUE(fit.logs[0].in_time);
+  EXPECT_NEAR(fit.logs[0].rows[1].deviations[0], 2e-3, 1e-15);
+  EXPECT_EQ(fit.deviations.at({true, {}, WaveformQuantity::current}).kind, Deviation::Kind::scatter);
+}
+
+TEST_F(BenchFile, ReadsABalance) {
+  const std::string balance = "[balance]\nmass = \"8 g\"\nstiffness = \"2 kN/m\"\ndamping = \"0.2 N s/m\"\n";
+  const std::string of_balance = "[[parameter]]\nkey = \"balance.damping\"\nlower = \"0 N s/m\"\nupper = \"1 N s/m\"\n";
+  write("bench.toml", head + balance + of_balance + deviation + log);
+  const BenchFit fit = read_bench(folder_ / "bench.toml");
+  EXPECT_NEAR(fit.balance->stiffness, 2e3, 1e-9);
+  ASSERT_EQ(fit.parameters.size(), 1U);
+  EXPECT_EQ(fit.parameters[0].start, 0.2);
+  EXPECT_EQ(fit.parameters[0].of_bench->kind, BenchUnknown::Kind::balance_damping);
+  EXPECT_THAT(error_of(head + of_balance + deviation + log), HasSubstr("balance.damping needs the section [balance]"));
+  EXPECT_THAT(
+      error_of(head + "[balance]\nmass = \"0 g\"\nstiffness = \"2 kN/m\"\ndamping = 0\n" + parameter + deviation + log),
+      HasSubstr("balance.mass: must be > 0"));
+}
+
+TEST_F(BenchFile, RecordsThatCannotBeUsedAreRefused) {
+  const std::string of_record = "[[log]]\nfile = \"signals.csv\"\ncondition = \"air\"\n";
+  write("signals.csv", "time_s,current_mA\n0,1\n0.1,2\n0.2,1\n");
+  EXPECT_THAT(error_of(head + parameter + of_record), HasSubstr("voltage: missing: give voltage = \"3 V\""));
+  EXPECT_THAT(error_of(head + parameter + of_record + "voltage = \"3 V\"\n"),
+              HasSubstr("signals.csv:2:1: time: 3 samples are too few for a mean cycle; at least 32 are needed"));
+  EXPECT_THAT(error_of(head + parameter + of_record + "voltage = \"3 V\"\nunknown_zero = [\"lift\"]\n"),
+              HasSubstr("too few"));
+  EXPECT_THAT(error_of(head + parameter + deviation + log + "burst = \"1 s\"\n"),
+              HasSubstr("log[1].burst: is of a record in time, and the file has no times"));
+  EXPECT_THAT(error_of(head + parameter + deviation + log + "unknown_zero = [\"lift\"]\n"),
+              HasSubstr("the log has no waveform of lift"));
+  EXPECT_THAT(error_of(head + parameter + deviation + log + "unknown_zero = [\"weight\"]\n"),
+              HasSubstr("expected a list of quantities"));
+  write("signals.csv", "crank_angle_deg,current_std_mA\n0,1\n90,2\n");
+  EXPECT_THAT(error_of(head + parameter + of_record + "voltage = \"3 V\"\n"),
+              HasSubstr("is the scatter of a column that the file has not"));
 }
 
 TEST_F(BenchFile, RefusalsNamePlaceAndReason) {

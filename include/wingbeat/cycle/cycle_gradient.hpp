@@ -156,15 +156,28 @@ class CycleGradient {
   GradientInstant instant(double theta) const {
     std::size_t n = cycle_.steps.size() - 1;
     while (n > 0 && cycle_.steps[n].x > theta) --n;
-    const JetState y = state_at(n, theta);
-    const auto signs = solver::signs_of<Jets>(cycle_.steps[n]);
-    const Motion<W> m = jets_.motion(W(theta), y, signs);
-    return {total(jets_.shaft_speed(y)),
-            total(m.current),
-            total(m.stroke_velocity),
-            total(m.aero.lift),
-            System::has_rod ? total(m.rod_force) / motors_ : J(absent),
-            total(m.motor_torque)};
+    const auto& step = cycle_.steps[n];
+    const auto signs = solver::signs_of<Jets>(step);
+    JetState y = starts_[n];
+    W time = begins_[n];
+    if (theta != step.x) {
+      const auto inside =
+          solver::take_step<true>(cycle_.method, jets_, system_, W(step.x), y, W(theta - step.x), signs);
+      y = inside.y;
+      time += inside.dq[std::size_t(Integral::time)];
+    }
+    State at;
+    for (int k = 0; k < N; ++k) at[k] = y[k].a;
+    const auto rates = system_.template rates<true>(theta, at, step.signs);
+    const auto along_signs = solver::signs_of<Along>(step);
+    const auto moved = moving(at, rates.dy);
+    GradientInstant instant;
+    static_cast<InstantValues<J>&>(instant) =
+        values_at<J>(jets_, W(theta), y, signs, time, motors_, [&](const W& x) { return total(x); });
+    instant.slopes = values_at<double>(along_, Jet<1>(theta, 0), moved, along_signs, Jet<1>(0.0), motors_.a,
+                                       [](const Jet<1>& x) { return x.v[0]; });
+    instant.slopes.time = rates.dq[std::size_t(Integral::time)];
+    return instant;
   }
 
  private:
@@ -177,6 +190,25 @@ class CycleGradient {
     double x;
     CycleExtremes<Jet<1>> value;  ///< with the derivative along the solution
   };
+
+  /// What acts at x, each number taken out by `take`.
+  template <class Result, class Scalar, class On, class OnState, class Signs, class Motors, class Take>
+  static InstantValues<Result> values_at(const On& on, const Scalar& x, const OnState& y, const Signs& signs,
+                                         const Scalar& time, const Motors& motors, const Take& take) {
+    const Motion<Scalar> m = on.motion(x, y, signs);
+    InstantValues<Result> values{take(time),
+                                 take(on.shaft_speed(y)),
+                                 take(m.current),
+                                 take(m.voltage),
+                                 take(on.stroke_angle(m, y)),
+                                 take(m.stroke_velocity),
+                                 Result(absent),
+                                 take(m.aero.lift),
+                                 System::has_rod ? Result(take(m.rod_force) / motors) : Result(absent),
+                                 take(m.motor_torque)};
+    if constexpr (pitching) values.pitch_angle = take(On::local_pitch(y));
+    return values;
+  }
 
   /// A number in the slots that are used within.
   static W shifted(const J& x) {
@@ -420,7 +452,7 @@ class CycleGradient {
   JetState end_;
   std::vector<JetState> starts_;
   std::vector<JetState> ends_;  ///< of the steps, of wings that pitch
-  std::vector<W> begins_;       ///< time from the cycle's start at which each step begins, of wings that pitch [s]
+  std::vector<W> begins_;       ///< time from the cycle's start at which each step begins [s]
   double start_change_[N][slots] = {};
   bool absent_slots_[gradient_slots];
 };
@@ -442,10 +474,8 @@ bool CycleGradient<System>::run() {
         solver::take_step<true>(cycle_.method, jets_, system_, W(step.x), y, W(step.h), signs, stages_of(ended));
     for (std::size_t q = 0; q < totals_.size(); ++q) totals_[q] += result.dq[q];
     y = result.y;
-    if constexpr (pitching) {
-      ends_.push_back(y);
-      begins_.push_back(totals_[time] - result.dq[time]);
-    }
+    if constexpr (pitching) ends_.push_back(y);
+    begins_.push_back(totals_[time] - result.dq[time]);
   }
   end_ = y;
   // (I - M) dy/dp = dP/dp, one right-hand side per slot behind the states.

@@ -35,14 +35,24 @@ struct GradientVehicle {
 };
 GradientVehicle gradient_vehicle(const Design<GradientJet>& design, Condition condition);
 
-/// One instant of the cycle at a fixed crank angle, in the order of WaveformRow.
-struct GradientInstant {
-  GradientJet crank_speed;        ///< omega [rad/s]
-  GradientJet current;            ///< i [A]
-  GradientJet flapping_velocity;  ///< beta' [rad/s]
-  GradientJet lift;               ///< [N]
-  GradientJet rod_force;          ///< F [N]
-  GradientJet motor_torque;       ///< T_m [N m]
+/// What acts at one instant of the cycle.
+template <class S>
+struct InstantValues {
+  S time;               ///< since the phase 0 [s]
+  S crank_speed;        ///< omega [rad/s]
+  S current;            ///< i [A]
+  S voltage;            ///< v at the motor's terminals [V]
+  S stroke_angle;       ///< beta [rad]
+  S flapping_velocity;  ///< beta' [rad/s]
+  S pitch_angle;        ///< psi [rad]; absent under the pitch law
+  S lift;               ///< [N]
+  S rod_force;          ///< F [N]; absent without a rod
+  S motor_torque;       ///< T_m [N m]
+};
+
+/// One instant of the cycle at a fixed crank angle, or phase of a direct drive's supply.
+struct GradientInstant : InstantValues<GradientJet> {
+  InstantValues<double> slopes;  ///< along the cycle, by that angle [1/rad]
 };
 
 /// The derivative by parameter k is `metrics[m].v[gradient_first_slot + k]`; slot gradient_voltage_slot holds the one

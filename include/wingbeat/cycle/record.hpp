@@ -28,6 +28,8 @@ class CycleRecord {
   const Vehicle<double>& vehicle() const;
   /// The cycle at a crank angle (direct drive: phase of the supply) [rad], 0 to 2 pi, to the accuracy of the orbit.
   WaveformRow at(double theta) const;
+  /// The crank angle (direct drive: phase of the supply) [rad] at a time since its zero, 0 to the period [s].
+  double phase_at(double time) const;
   /// The cycle at `count` instants equally spaced in time, both ends included; count >= 2.
   std::vector<WaveformRow> waveform(int count) const;
   const Recorded& recorded() const;

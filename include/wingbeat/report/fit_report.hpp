@@ -34,4 +34,8 @@ std::string covariance_file(const FitResult& result, const std::string& vehicle_
 /// Residuals in standard deviations against what was set, one panel per condition. Throws like plot_cycle.
 void plot_residuals(const BenchFit& fit, const FitResult& result, PlotFormat format, const std::filesystem::path& file);
 
+/// Measured points over the computed cycle of each waveform, 12 panels at most. Throws like plot_cycle.
+void plot_fitted_cycles(const BenchFit& fit, const FitResult& result, PlotFormat format,
+                        const std::filesystem::path& file);
+
 }  // namespace wingbeat

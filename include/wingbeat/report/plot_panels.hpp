@@ -29,4 +29,19 @@ struct PointAxes {
 void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, PlotFormat format,
                  const std::filesystem::path& file);
 
+/// A measured point with its standard deviation.
+struct CoursePoint {
+  double x, y, deviation;
+};
+/// One quantity over the cycle: computed curve, measured points.
+struct CoursePanel {
+  std::string title, y = {};
+  std::vector<std::pair<double, double>> curve = {};
+  std::vector<CoursePoint> points = {};
+};
+
+/// Panels of curves with points one below the other, each on a scale of its own over 0 to 1. Throws like plot_cycle.
+void plot_courses(std::span<const CoursePanel> panels, const PointAxes& axes, PlotFormat format,
+                  const std::filesystem::path& file);
+
 }  // namespace wingbeat

@@ -17,9 +17,20 @@
 
 namespace wingbeat {
 
-/// Quantities of a phase-averaged waveform, in the order of GradientInstant.
-enum class WaveformQuantity { crank_speed, current, flapping_velocity, lift, rod_force, motor_torque };
-inline constexpr int waveform_quantity_count = 6;
+/// Quantities of a waveform.
+enum class WaveformQuantity {
+  crank_speed,
+  current,
+  flapping_velocity,
+  lift,
+  rod_force,
+  motor_torque,
+  stroke_angle,
+  pitch_angle,
+  voltage,
+  balance_force  ///< what a balance reads of the lift, see Balance
+};
+inline constexpr int waveform_quantity_count = 10;
 /// The name outside the program ("crank_speed") and the SI unit.
 const char* name_of(WaveformQuantity quantity);
 const char* unit_of(WaveformQuantity quantity);
@@ -40,12 +51,25 @@ template <>
 inline constexpr std::pair<const char*, Given> names_of<Given>[] = {{"voltage", Given::voltage},
                                                                     {"frequency", Given::frequency}};
 
-/// One row of a log; of a waveform log, one crank angle.
+/// One row of a log; of a waveform log, one instant of the cycle.
 struct BenchRow {
-  int line = 0;                ///< in its file
-  double given = 0.0;          ///< voltage [V] or frequency [Hz]
-  double crank_angle = 0.0;    ///< of a waveform log [rad]
-  std::vector<double> values;  ///< SI, one per column; NaN where none was measured
+  int line = 0;        ///< in its file
+  double given = 0.0;  ///< voltage [V] or frequency [Hz]
+  /// Of a waveform log: the crank angle (direct drive: phase of its supply), or the time in a log in time, as share of
+  /// the period times 2 pi [rad].
+  double crank_angle = 0.0;
+  std::vector<double> values;           ///< SI, one per column; NaN where none was measured
+  std::vector<double> deviations = {};  ///< their standard deviations where the log shows them; else empty or NaN
+  int burst = 0;                        ///< of a waveform log: rows of one burst are of one operating point
+  double drive_frequency = absent;      ///< of a direct drive, where the log shows it [Hz]
+};
+
+/// A balance on which the vehicle stands: a mass on a damped spring. Mass and damping are those of all that moves with
+/// its spring.
+struct Balance {
+  double mass = 0.0;       ///< [kg]
+  double stiffness = 0.0;  ///< [N/m]
+  double damping = 0.0;    ///< [N s/m]
 };
 
 struct BenchLog {
@@ -53,7 +77,11 @@ struct BenchLog {
   Condition condition = Condition::air;
   bool springs = false;  ///< false: the vehicle's springs are taken off
   Given given = Given::voltage;
-  bool waveform = false;  ///< rows are instants of one cycle, all of the same `given`
+  bool waveform = false;          ///< rows are instants of one cycle for each burst
+  bool in_time = false;           ///< of a waveform: rows are at shares of the period
+  bool phase_known = false;       ///< of a log in time: its zero is the crank angle 0
+  bool frequency_stated = false;  ///< of a log in time: the bench file says about which frequency the cycle has
+  std::vector<WaveformQuantity> unknown_zeros = {};  ///< quantities measured from a zero that is not known
   std::vector<MeasuredQuantity> columns;
   std::vector<BenchRow> rows;
   int values_left_out = 0;         ///< cells without a value
@@ -62,14 +90,33 @@ struct BenchLog {
 
 /// Standard deviation of a column's values.
 struct Deviation {
-  enum class Kind { absolute, relative, estimated } kind = Kind::estimated;
+  /// `scatter`: each value has its own, of its log.
+  enum class Kind { absolute, relative, estimated, scatter } kind = Kind::estimated;
   double value = 0.0;  ///< SI, or a fraction
 };
 
-struct FreeParameter {
-  DesignParameter parameter;
-  double lower, upper, start;  ///< SI
+/// A number of the bench that is fitted beside the vehicle's parameters.
+struct BenchUnknown {
+  enum class Kind {
+    balance_mass,
+    balance_stiffness,
+    balance_damping,
+    phase,  ///< of a log in time: the cycle's where its burst has the phase 0 [rad]
+    zero    ///< of a column of a log: what it shows at 0 [SI]
+  } kind;
+  std::size_t log = 0;                                         ///< of a phase or zero
+  int burst = 0;                                               ///< of a phase
+  WaveformQuantity quantity = WaveformQuantity::stroke_angle;  ///< of a zero
 };
+
+struct FreeParameter {
+  DesignParameter parameter;   ///< of a number of the bench key and unit alone
+  double lower, upper, start;  ///< SI
+  std::optional<BenchUnknown> of_bench = {};
+};
+
+/// Numbers of the bench that may be free: "balance.mass", "balance.stiffness", "balance.damping"; empty for others.
+std::optional<BenchUnknown> balance_unknown(const std::string& key);
 
 enum class Loss { none, huber, soft_l1, cauchy };
 template <>
@@ -85,6 +132,7 @@ struct BenchFit {
   std::vector<BenchLog> logs;
   std::map<MeasuredQuantity, Deviation> deviations;
   std::vector<FreeParameter> parameters;
+  std::optional<Balance> balance;  ///< needed where a log has its readings
   Loss loss = Loss::none;
   double loss_scale = 1.5;  ///< where the loss turns from square to robust, in standard deviations
   int starts = 1;           ///< the given start, and starts - 1 points of a Latin hypercube within the bounds
@@ -103,8 +151,9 @@ enum class Undetermined {
 /// A parameter as the data see it.
 struct FittedParameter {
   std::string key, unit;
-  std::optional<double> value;  ///< empty: the data do not determine it
-  double kept = 0.0;            ///< what the fitted vehicle has
+  enum class Of { vehicle, balance, log } of = Of::vehicle;  ///< what it is a number of
+  std::optional<double> value;                               ///< empty: the data do not determine it
+  double kept = 0.0;                                         ///< what the fitted vehicle has
   double standard_error = absent;
   double lower_95 = absent, upper_95 = absent;                  ///< from the standard error
   double profile_lower_95 = absent, profile_upper_95 = absent;  ///< from the loss's profile; absent where not computed
@@ -118,6 +167,12 @@ struct FittedParameter {
   };
   std::vector<ProfilePoint> profile;
 };
+
+template <>
+inline constexpr std::pair<const char*, FittedParameter::Of> names_of<FittedParameter::Of>[] = {
+    {"vehicle", FittedParameter::Of::vehicle},
+    {"balance", FittedParameter::Of::balance},
+    {"log", FittedParameter::Of::log}};
 
 /// One thing that the data tell of parameters, or cannot tell; in words: describe() of report/fit_report.hpp.
 struct FitFinding {
@@ -157,6 +212,14 @@ struct UnreachedRow {
   FlappingStatus status;
   StatusEvidence evidence;               ///< what shows the status, unless a frequency is refused
   std::optional<SearchFinding> refused;  ///< why the frequency cannot be reached
+};
+
+/// The fitted model's course of one quantity over the cycle of a waveform.
+struct FittedCycle {
+  std::size_t log, row, column;  ///< the first row of its burst
+  bool in_time = false;          ///< values are equally spaced in time; else by the crank angle
+  double phase = 0.0;            ///< of the cycle where the log's phase is 0 [rad]
+  std::vector<double> values;    ///< from phase 0 to 2 pi, both ends included [SI]
 };
 
 /// What one condition contributes.
@@ -201,14 +264,15 @@ struct FitResult {
   std::optional<Misfit> misfit;
   double p_value = absent;  ///< chance of residuals as large under the stated deviations
   std::vector<QuantityResiduals> quantities;
-  Design<double> design;  ///< fitted; parameters not determined keep their start
-  std::vector<FittedParameter> parameters;
+  Design<double> design;                        ///< fitted; parameters not determined keep their start
+  std::vector<FittedParameter> parameters;      ///< those of the fit, then phases and zeros of the logs
   std::vector<std::vector<double>> covariance;  ///< SI; rows of parameters not determined are absent (NaN)
   std::vector<std::vector<double>> correlation;
   std::vector<FitDirection> directions;  ///< best known first
   std::vector<FitFinding> findings;
   std::vector<ConditionShare> conditions;
   std::vector<FitPoint> points;
+  std::vector<FittedCycle> cycles;  ///< of the waveforms that the model reaches
   std::vector<UnreachedRow> unreached;
   std::map<MeasuredQuantity, double> estimated_deviations;  ///< SI
   double deviance = 0.0;                                    ///< -2 ln L up to a constant that only depends on the data
