@@ -24,8 +24,12 @@ constexpr MeasuredQuantity of_voltage{false, Metric::voltage, {}};
 bool is_voltage(const MeasuredQuantity& q) { return q.waveform && q.quantity == WaveformQuantity::voltage; }
 
 /// Numbers the bursts of a record that is cut by time; rows behind the last whole one are dropped and counted.
-void cut(std::vector<BenchRow>& rows, double duration, LogNotes& notes) {
+void cut(std::vector<BenchRow>& rows, double duration, const std::string& file, LogNotes& notes) {
   const double start = rows.front().crank_angle;
+  if (!((rows.back().crank_angle - start) / duration < double(rows.size()))) {
+    throw InputError(file, 0, 0, "burst",
+                     fmt::format("{:g} s cuts the record into more bursts than it has rows", duration));
+  }
   for (BenchRow& row : rows) row.burst = 1 + int((row.crank_angle - start) / duration);
   const int last = rows.back().burst;
   if (last == 1 || rows.back().crank_angle - start >= (last - 1 + whole_burst) * duration) return;
@@ -64,7 +68,7 @@ Mean mean_of(const std::vector<double>& values) {
 BenchLog mean_cycles(const BenchLog& record, const LogRequest& request, LogNotes& notes) {
   std::vector<BenchRow> rows = record.rows;
   notes.rows_read = int(rows.size());
-  if (request.burst) cut(rows, *request.burst, notes);
+  if (request.burst) cut(rows, *request.burst, record.file, notes);
   std::stable_sort(rows.begin(), rows.end(), [](const BenchRow& a, const BenchRow& b) { return a.burst < b.burst; });
   const auto voltage = std::find_if(record.columns.begin(), record.columns.end(), is_voltage);
   const bool has_voltage = voltage != record.columns.end();

@@ -16,6 +16,8 @@ using detail::format;
 
 constexpr int max_harmonics = 24;
 constexpr int max_bins = 72, min_bins = 16, samples_in_bin = 4;
+/// Of the usual distances between samples, as many as samples at most times this may lie within the record.
+constexpr double max_gaps = 20.0;
 /// The strongest component of the signals is a harmonic of the cycle up to this one.
 constexpr int strongest_harmonic = 6;
 /// Share of the signals' variance that what a longer period explains beside a shorter one must have.
@@ -396,6 +398,12 @@ PhaseAverage phase_average(const SignalRecord& record, const PhaseAverageOptions
   for (std::size_t n = 1; n < samples; ++n) distances.push_back(record.time[n] - record.time[n - 1]);
   std::nth_element(distances.begin(), distances.begin() + std::ptrdiff_t(distances.size() / 2), distances.end());
   const double step = distances[distances.size() / 2];
+
+  if (!(step > 0.0) || !(duration / step < max_gaps * double(samples))) {
+    throw ParameterError("time", format("%zu samples over %.4g s, %.4g s apart as a rule, are too uneven for a mean "
+                                        "cycle; leave out repeated times and cut the record at its gaps (burst)",
+                                        samples, duration, step));
+  }
 
   PhaseLaw law;
   law.middle = record.time.front() + 0.5 * duration;

@@ -403,6 +403,8 @@ TEST_F(BenchFile, RecordsThatCannotBeUsedAreRefused) {
   EXPECT_THAT(error_of(head + parameter + of_record), HasSubstr("voltage: missing: give voltage = \"3 V\""));
   EXPECT_THAT(error_of(head + parameter + of_record + "voltage = \"3 V\"\n"),
               HasSubstr("signals.csv:2:1: time: 3 samples are too few for a mean cycle; at least 32 are needed"));
+  EXPECT_THAT(error_of(head + parameter + of_record + "voltage = \"3 V\"\nburst = \"1 ns\"\n"),
+              HasSubstr("burst: 1e-09 s cuts the record into more bursts than it has rows"));
   EXPECT_THAT(error_of(head + parameter + of_record + "voltage = \"3 V\"\nunknown_zero = [\"lift\"]\n"),
               HasSubstr("too few"));
   EXPECT_THAT(error_of(head + parameter + deviation + log + "burst = \"1 s\"\n"),

@@ -150,6 +150,11 @@ TEST(PhaseAverage, RefusesWhatHasNoPeriod) {
   EXPECT_THAT(refusal(r.signals(course), about), testing::HasSubstr("2.1 cycles"));
   r.duration = 1.0;
   EXPECT_THAT(refusal(r.signals([](double) { return 3.0; })), testing::HasSubstr("no period"));
+  SignalRecord uneven = r.signals(course);
+  uneven.time.back() = 1e12;
+  EXPECT_THAT(refusal(uneven), testing::HasSubstr("too uneven"));
+  for (double& t : uneven.time) t = 1.0;
+  EXPECT_THAT(refusal(uneven), testing::HasSubstr("too uneven"));
 }
 
 }  // namespace
