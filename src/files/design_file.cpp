@@ -74,6 +74,7 @@ class Reader {
     d.pitch.rotational_lift = rotation.lift;
     d.pitch.damping_coefficient = rotation.damping;
     attempt([&] { read_flag("pitch.rotational_lift", d.pitch.rotational_lift); });
+    attempt([&] { read_flag("wing.planform.scale_inertia", d.wing.scale_inertia); });
     attempt([&] { read_flag("electronics.regeneration", d.electronics.regenerates); });
     attempt([&] {
       if (document_.find("supply.throttle")) d.supply.throttle = choice<Throttle>("supply.throttle");

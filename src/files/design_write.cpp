@@ -84,6 +84,7 @@ std::vector<WrittenKey> written_keys(const Design<double>& design) {
       written.value.text = key.text(design);
       if (written.value.text.empty()) continue;
       const bool flag = key.range.text == "true or false";
+      if (flag && key.fallback == "true" && written.value.text == key.fallback) continue;
       written.value.kind = flag ? TomlNode::Kind::boolean : TomlNode::Kind::text;
       written.value.number = written.value.text == "true" ? 1.0 : 0.0;
       written.text = flag ? written.value.text : toml_text(written.value.text);

@@ -25,6 +25,7 @@ void require(const ParameterKey& key, double value) {
 }
 
 void validate(const Planform<double>& p) {
+  require(planform_key::scale, p.scale);
   if (p.shape == PlanformShape::moments) {
     require(planform_key::s2, p.s2);
     require(planform_key::s3, p.s3);

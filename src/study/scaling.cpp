@@ -31,8 +31,9 @@ int exponent_of(const ParameterText& parameter) {
 }
 
 bool is_of_wing(std::string_view path) {
-  // The stiffness of hinges belongs to what drives the wings.
-  return path.starts_with("wing.") && !path.starts_with("wing.torsion.") && path != "wing.resonance";
+  // The stiffness of hinges belongs to what drives the wings, the distance between them to the body.
+  return path.starts_with("wing.") && !path.starts_with("wing.torsion.") && path != "wing.resonance" &&
+         path != planform_key::shoulder_distance.path;
 }
 
 }  // namespace

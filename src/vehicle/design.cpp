@@ -135,6 +135,14 @@ void validate_added_mass(const Design<double>& d, const Vehicle<double>& v) {
           J_a, own, 90.0 - degrees_per_radian * x, share));
 }
 
+/// A moment of inertia that is stated grows with the scale or does not; one that follows has no choice.
+void validate_scale(const WingDesign<double>& wing) {
+  if (wing.scale_inertia || !(wing.areal_density || wing.resonance)) return;
+  throw ParameterError("wing.planform.scale_inertia",
+                       std::string("is of a stated wing.inertia, which here follows from ") +
+                           (wing.areal_density ? "wing.areal_density" : "wing.resonance"));
+}
+
 /// What wings that pitch on a hinge need and cannot have.
 void validate_pitching(const Design<double>& d, const Vehicle<double>& v) {
   const bool inertia = d.wing.pitch_inertia.has_value(), product = d.wing.mass_product.has_value();
@@ -229,6 +237,8 @@ void validate(const Design<double>& d) {
                                                     : motor_thermal_key::resistance_winding.path,
                          "missing: give both thermal resistances, of winding and case, or neither");
   }
+
+  validate_scale(d.wing);
 
   const Vehicle<double> v = resolve(d);
   if (drive_of(d).rotates) validate(v.transmission);

@@ -103,6 +103,11 @@ TEST_F(Targets, PwmReachesItByItsDuty) {
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_NEAR(o.json()["supply_duty"].get<double>(), 0.792, 1e-3);
   const std::string low = "supply={type=\"pwm\", voltage=\"7 V\", duty=0.2, frequency=\"20 kHz\"}";
+  // As large by one number of the vehicle.
+  const Json larger = run({"run", path("larger.toml"), "--json"}).json();
+  const Json scaled = flapper({"--set", "wing.planform.scale=1.1", "--json"}).json();
+  EXPECT_NEAR(scaled["lift_mean_n"].get<double>() / larger["lift_mean_n"].get<double>(), 1.0, 1e-6);
+  EXPECT_EQ(flapper({"--set", "wing.planform.scale=0"}).status, 2);
   EXPECT_THAT(flapper({"--lift-to-weight", "1", "--set", low}).err,
               HasSubstr("more than the 7 V that the supply gives"));
   EXPECT_THAT(flapper({"--lift-to-weight", "2", "--set", low}).err, HasSubstr("; a duty of 1 gives 7 V"));

@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "parts/expect_error.hpp"
 #include "parts/outline.hpp"
@@ -117,6 +119,83 @@ TEST(Planform, PaperVehiclesMomentsAreThoseOfItsEquivalentSemiEllipse) {
   EXPECT_NEAR(m.s3, 1.048e-7, 0.01 * m.s3);
 }
 
+/// Integrals over an outline whose lengths are each multiplied by `scale`, sampled between its rows: of chord^m r^n.
+double scaled_moment(const Planform<double>& p, double scale, int chord_power, int radius_power) {
+  std::vector<std::pair<double, double>> rows;  // where the chord is smooth in between
+  if (p.shape == PlanformShape::tabulated) {
+    for (const auto& [x, chord] : p.chord_table) rows.emplace_back(scale * x, scale * chord);
+  } else {
+    rows = {{0.0, scale * p.root_chord}, {scale * p.length, scale * p.root_chord}};
+  }
+  const double length = rows.back().first;
+  const auto chord_at_distance = [&](double x) {
+    if (p.shape == PlanformShape::rectangle) return scale * p.root_chord;
+    if (p.shape == PlanformShape::semi_ellipse) {
+      return scale * p.root_chord * std::sqrt(std::max(0.0, 1.0 - (x / length) * (x / length)));
+    }
+    std::size_t n = 1;
+    while (n + 1 < rows.size() && rows[n].first < x) ++n;
+    const auto [x0, c0] = rows[n - 1];
+    const auto [x1, c1] = rows[n];
+    return c0 + (c1 - c0) * (x - x0) / (x1 - x0);
+  };
+  double sum = 0.0;
+  for (std::size_t n = 1; n < rows.size(); ++n) {
+    // The midpoint rule in an angle, in which an elliptic tip is smooth.
+    constexpr int intervals = 20000;
+    const double from = std::asin(rows[n - 1].first / length), to = std::asin(rows[n].first / length);
+    for (int k = 0; k < intervals; ++k) {
+      const double angle = from + (to - from) * (k + 0.5) / intervals, x = length * std::sin(angle);
+      sum += std::pow(chord_at_distance(x), chord_power) * std::pow(x + scale * p.hub_offset, radius_power) * length *
+             std::cos(angle) * (to - from) / intervals;
+    }
+  }
+  return sum;
+}
+
+TEST(Planform, TheScaleMultipliesAllLengthsOfTheOutline) {
+  for (const PlanformShape shape : {PlanformShape::semi_ellipse, PlanformShape::rectangle, PlanformShape::tabulated}) {
+    for (const double offset : {0.0, 7e-3}) {
+      for (const double scale : {0.6, 1.0, 1.7}) {
+        Planform<double> p = outline_of(shape, offset, R, c_0);
+        if (shape == PlanformShape::tabulated)
+          p.chord_table = {{2e-3, 20e-3}, {0.4 * R, c_0}, {0.7 * R, 18e-3}, {R, 2e-3}};
+        p.scale = scale;
+        const double N = 2.0;
+        const auto expect = [&](double value, int m, int n) {
+          const double integral = N * scaled_moment(p, scale, m, n);
+          EXPECT_NEAR(value, integral, 1e-8 * integral) << name_of(shape) << " " << m << n;
+        };
+        expect(chord_moments(p, N).s2, 1, 2);
+        expect(chord_moments(p, N).s3, 1, 3);
+        expect(first_chord_moment(p, N), 1, 1);
+        expect(squared_chord_moment(p, N), 2, 2);
+        expect(N * wing_area(p), 1, 0);
+        const PitchChordMoments<double> pitch = pitch_chord_moments(p, N);
+        expect(pitch.s21, 2, 1);
+        expect(pitch.s22, 2, 2);
+        expect(pitch.s30, 3, 0);
+        expect(pitch.s31, 3, 1);
+        expect(pitch.s40, 4, 0);
+        EXPECT_DOUBLE_EQ(length_of(p), scale * R);
+        EXPECT_DOUBLE_EQ(hub_offset_of(p), scale * offset);
+        Planform<double> unscaled = p;
+        unscaled.scale = 1.0;
+        EXPECT_NEAR(chord_at(p, 0.55), scale * chord_at(unscaled, 0.55), 1e-15);
+      }
+    }
+  }
+}
+
+TEST(Planform, MomentsGivenOutrightGrowWithTheScale) {
+  Planform<double> p;
+  p.s2 = 2.457e-6, p.s3 = 1.048e-7, p.s22 = 4e-8;
+  p.scale = 1.3;
+  EXPECT_NEAR(chord_moments(p, 2.0).s2, std::pow(1.3, 4) * 2.457e-6, 1e-20);
+  EXPECT_NEAR(chord_moments(p, 2.0).s3, std::pow(1.3, 5) * 1.048e-7, 1e-21);
+  EXPECT_NEAR(squared_chord_moment(p, 2.0), std::pow(1.3, 5) * 4e-8, 1e-21);
+}
+
 TEST(Planform, RefusesShapesOutOfRange) {
   using P = Planform<double>;
   const P ellipse = outline_of(PlanformShape::semi_ellipse, 0.0, R, c_0);
@@ -126,6 +205,7 @@ TEST(Planform, RefusesShapesOutOfRange) {
             "wing.planform.root_chord: must be > 0 [m], got -0.025");
   EXPECT_EQ(refusal(ellipse, [](P& p) { p.hub_offset = -1e-3; }),
             "wing.planform.hub_offset: must be >= 0 [m], got -0.001");
+  EXPECT_EQ(refusal(ellipse, [](P& p) { p.scale = 0.0; }), "wing.planform.scale: must be > 0 [1], got 0");
   EXPECT_EQ(refusal(P{}, [](P& p) { p.s2 = -1.0; }), "wing.planform.s2: must be >= 0 [m4], got -1");
   EXPECT_EQ(refusal(P{}, [](P& p) { p.s3 = std::nan(""); }), "wing.planform.s3: must be >= 0 [m5], got nan");
 

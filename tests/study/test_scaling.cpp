@@ -56,6 +56,11 @@ TEST(Scaling, OfWingsAloneTheDriveStays) {
   EXPECT_NEAR(s.design.wing.planform.length, 1.1 * d.wing.planform.length, 1e-15);
   EXPECT_EQ(s.design.spring.stiffness, d.spring.stiffness);
   EXPECT_EQ(s.design.mass, d.mass);
+  Design<double> wide = d;
+  wide.wing.planform = {PlanformShape::rectangle, 60e-3, 20e-3};
+  wide.wing.planform.shoulder_distance = 8e-3;
+  EXPECT_EQ(scaled(wide, 1.1, ScaledPart::wing).design.wing.planform.shoulder_distance, 8e-3);
+  EXPECT_NEAR(scaled(wide, 1.1, ScaledPart::vehicle).design.wing.planform.shoulder_distance, 8.8e-3, 1e-15);
 }
 
 TEST(Scaling, ThereAndBackIsTheSame) {

@@ -27,6 +27,8 @@ inline constexpr std::pair<const char*, PlanformShape> names_of<PlanformShape>[]
 
 /// One wing's outline. Lengths run from the wing root; the hub offset shifts the root away from the hinge. At the
 /// distance x from the root a semi-ellipse has the chord \f$c(x) = c_0 \sqrt{1 - (x/R)^2}\f$, a rectangle \f$c_0\f$.
+/// All lengths but the distance between the shoulders are multiplied by the scale, given moments \f$S_{mn}\f$ by its
+/// power m + n + 1.
 template <Scalar S>
 struct Planform {
   PlanformShape shape = PlanformShape::moments;
@@ -40,11 +42,12 @@ struct Planform {
   std::optional<S> chord_ratio = {};  ///< c_0 / R [1], > 0; given, root_chord follows from the length
   std::optional<S> s22 = {};          ///< moments given outright: S_22 of all wings [m5], >= 0
   S shoulder_distance = S(0);         ///< between the hinges of two wings that share a body [m], >= 0
+  S scale = S(1);                     ///< s, multiplies lengths and chords [1], > 0
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.shape, self.length, self.root_chord, self.hub_offset, self.chord_table, self.s2, self.s3,
-               self.chord_ratio, self.s22, self.shoulder_distance);
+               self.chord_ratio, self.s22, self.shoulder_distance, self.scale);
   }
 };
 
@@ -66,6 +69,7 @@ inline constexpr ParameterKey root_chord{"wing.planform.root_chord", "m", range:
 inline constexpr ParameterKey chord_ratio{"wing.planform.chord_ratio", "1", range::positive};
 inline constexpr ParameterKey hub_offset{"wing.planform.hub_offset", "m", range::not_negative};
 inline constexpr ParameterKey shoulder_distance{"wing.planform.shoulder_distance", "m", range::not_negative};
+inline constexpr ParameterKey scale{"wing.planform.scale", "1", range::positive};
 inline constexpr ParameterKey s2{"wing.planform.s2", "m4", range::not_negative};
 inline constexpr ParameterKey s3{"wing.planform.s3", "m5", range::not_negative};
 inline constexpr ParameterKey s22{"wing.planform.s22", "m5", range::not_negative};
@@ -97,13 +101,34 @@ void visit_table(const std::vector<std::pair<double, double>>& table, const Visi
   }
 }
 
-/// c_0 [m].
+/// visit_table() of the scaled outline.
+template <Scalar S, class Visit>
+void visit_outline(const Planform<S>& p, const Visit& visit) {
+  visit_table(p.chord_table, [&](double weight, double chord, double x) {
+    visit(S(p.scale * weight), S(p.scale * chord), S(p.scale * x));
+  });
+}
+
+/// c_0 of the scaled outline [m].
 template <Scalar S>
 S root_chord_of(const Planform<S>& p) {
-  return p.chord_ratio ? S(*p.chord_ratio * p.length) : p.root_chord;
+  return p.scale * (p.chord_ratio ? S(*p.chord_ratio * p.length) : p.root_chord);
 }
 
 }  // namespace detail
+
+/// R of the scaled outline [m], of a planform that has a shape.
+template <Scalar S>
+S length_of(const Planform<S>& p) {
+  return p.scale *
+         (p.shape == PlanformShape::tabulated && !p.chord_table.empty() ? S(p.chord_table.back().first) : p.length);
+}
+
+/// Distance from the hinge to the root of the scaled outline [m].
+template <Scalar S>
+S hub_offset_of(const Planform<S>& p) {
+  return p.scale * p.hub_offset;
+}
 
 namespace detail {
 
@@ -111,7 +136,7 @@ namespace detail {
 /// is not for this function. Semi-ellipse: c = c_0 sqrt(1 - (x/R)^2).
 template <Scalar S>
 std::array<S, 4> root_moments(const Planform<S>& p) {
-  const S R = p.length;
+  const S R = length_of(p);
   const S c_0 = detail::root_chord_of(p);
   if (p.shape == PlanformShape::semi_ellipse) {
     return {pi / 4.0 * c_0 * R, c_0 * R * R / 3.0, pi / 16.0 * c_0 * R * R * R, 2.0 / 15.0 * c_0 * R * R * R * R};
@@ -119,15 +144,15 @@ std::array<S, 4> root_moments(const Planform<S>& p) {
   if (p.shape == PlanformShape::rectangle) {
     return {c_0 * R, c_0 * R * R / 2.0, c_0 * R * R * R / 3.0, c_0 * R * R * R * R / 4.0};
   }
-  double m[4] = {0.0, 0.0, 0.0, 0.0};
-  detail::visit_table(p.chord_table, [&](double weight, double chord, double x) {
-    double power = weight * chord;
-    for (double& moment : m) {
-      moment += power;
-      power *= x;
+  std::array<S, 4> m{S(0.0), S(0.0), S(0.0), S(0.0)};
+  detail::visit_outline(p, [&](const S& weight, const S& chord, const S& x) {
+    S power = weight * chord;
+    for (S& moment : m) {
+      moment = moment + power;
+      power = power * x;
     }
   });
-  return {S(m[0]), S(m[1]), S(m[2]), S(m[3])};
+  return m;
 }
 
 }  // namespace detail
@@ -146,20 +171,23 @@ std::array<S, 4> root_moments(const Planform<S>& p) {
 template <Scalar S>
 ChordMoments<S> one_wing_moments(const Planform<S>& p) {
   const std::array<S, 4> m = detail::root_moments(p);
-  return detail::shift_moments<S>(m[0], m[1], m[2], m[3], p.hub_offset);
+  return detail::shift_moments<S>(m[0], m[1], m[2], m[3], hub_offset_of(p));
 }
 
 /// \f$S_1 = N_\mathrm{w} \int c\, r\,\mathrm{d}r\f$ [m3] of all `count` wings, of a planform that has a shape.
 template <Scalar S>
 S first_chord_moment(const Planform<S>& p, const S& count) {
   const std::array<S, 4> m = detail::root_moments(p);
-  return count * (m[1] + p.hub_offset * m[0]);
+  return count * (m[1] + hub_offset_of(p) * m[0]);
 }
 
 /// S_2 [m4] and S_3 [m5] of all `count` wings.
 template <Scalar S>
 ChordMoments<S> chord_moments(const Planform<S>& p, const S& count) {
-  if (p.shape == PlanformShape::moments) return {p.s2, p.s3};
+  if (p.shape == PlanformShape::moments) {
+    const S area = square(p.scale), fourth = square(area);
+    return {fourth * p.s2, fourth * p.scale * p.s3};
+  }
   const ChordMoments<S> one = one_wing_moments(p);
   return {count * one.s2, count * one.s3};
 }
@@ -175,8 +203,8 @@ ChordMoments<S> chord_moments(const Planform<S>& p, const S& count) {
 /// \f]
 template <Scalar S>
 S squared_chord_moment(const Planform<S>& p, const S& count) {
-  if (p.shape == PlanformShape::moments) return p.s22 ? *p.s22 : S(0.0);
-  const S R = p.length, d = p.hub_offset;
+  if (p.shape == PlanformShape::moments) return p.s22 ? S(square(square(p.scale)) * p.scale * *p.s22) : S(0.0);
+  const S R = length_of(p), d = hub_offset_of(p);
   const S c2 = square(detail::root_chord_of(p));
   // Moments of c^2 about the root, shifted to the hinge: q_2 + 2 d q_1 + d^2 q_0.
   if (p.shape == PlanformShape::semi_ellipse) {
@@ -184,16 +212,9 @@ S squared_chord_moment(const Planform<S>& p, const S& count) {
   }
   if (p.shape == PlanformShape::rectangle) return count * c2 * R * (R * R / 3.0 + d * R + d * d);
   S sum(0.0);
-  detail::visit_table(p.chord_table, [&](double weight, double chord, double x) {
-    sum = sum + S(weight * chord * chord) * square(S(S(x) + d));
-  });
+  detail::visit_outline(
+      p, [&](const S& weight, const S& chord, const S& x) { sum = sum + weight * chord * chord * square(S(x + d)); });
   return count * sum;
-}
-
-/// R [m], of a planform that has a shape.
-template <Scalar S>
-S length_of(const Planform<S>& p) {
-  return p.shape == PlanformShape::tabulated && !p.chord_table.empty() ? S(p.chord_table.back().first) : p.length;
 }
 
 /// Chord [m] at this part of the length from the root, of a planform that has a shape.
@@ -207,7 +228,7 @@ S chord_at(const Planform<S>& p, double part) {
       std::lower_bound(rows.begin() + 1, rows.end() - 1, x,
                        [](const std::pair<double, double>& row, double station) { return row.first < station; });
   const auto [x0, c0] = *(next - 1);
-  return S(c0 + (next->second - c0) * (x - x0) / (next->first - x0));
+  return p.scale * (c0 + (next->second - c0) * (x - x0) / (next->first - x0));
 }
 
 /// Area of one wing [m2], of a planform that has a shape: \f$\int c\,\mathrm{d}x\f$, of a semi-ellipse
@@ -215,11 +236,11 @@ S chord_at(const Planform<S>& p, double part) {
 template <Scalar S>
 S wing_area(const Planform<S>& p) {
   if (p.shape == PlanformShape::tabulated) {
-    double area = 0.0;
-    detail::visit_table(p.chord_table, [&](double weight, double chord, double) { area += weight * chord; });
-    return S(area);
+    S area(0.0);
+    detail::visit_outline(p, [&](const S& weight, const S& chord, const S&) { area = area + weight * chord; });
+    return area;
   }
-  const S rectangle = detail::root_chord_of(p) * p.length;
+  const S rectangle = detail::root_chord_of(p) * length_of(p);
   return p.shape == PlanformShape::semi_ellipse ? S(S(0.25 * pi) * rectangle) : rectangle;
 }
 
@@ -254,16 +275,16 @@ struct PitchChordMoments {
 /// \f]
 template <Scalar S>
 PitchChordMoments<S> pitch_chord_moments(const Planform<S>& p, const S& count) {
-  const S R = p.length, d = p.hub_offset;
+  const S R = length_of(p), d = hub_offset_of(p);
   PitchChordMoments<S> moments;
   moments.s22 = squared_chord_moment(p, count);
   if (p.shape == PlanformShape::tabulated) {
-    detail::visit_table(p.chord_table, [&](double weight, double chord, double x) {
-      const double c2 = weight * chord * chord, c3 = c2 * chord;
-      moments.s21 = moments.s21 + S(c2) * (S(x) + d);
-      moments.s30 = moments.s30 + S(c3);
-      moments.s31 = moments.s31 + S(c3) * (S(x) + d);
-      moments.s40 = moments.s40 + S(c3 * chord);
+    detail::visit_outline(p, [&](const S& weight, const S& chord, const S& x) {
+      const S c2 = weight * chord * chord, c3 = c2 * chord;
+      moments.s21 = moments.s21 + c2 * (x + d);
+      moments.s30 = moments.s30 + c3;
+      moments.s31 = moments.s31 + c3 * (x + d);
+      moments.s40 = moments.s40 + c3 * chord;
     });
   } else {
     const S c = detail::root_chord_of(p), c2 = c * c, c3 = c2 * c;

@@ -61,7 +61,7 @@ template <Scalar S>
 S reynolds_number_per_speed(const Planform<S>& p, const S& kinematic_viscosity) {
   if (p.shape == PlanformShape::moments) return S(std::numeric_limits<double>::quiet_NaN());
   const S R = length_of(p);
-  return wing_area(p) / R * (R + p.hub_offset) / kinematic_viscosity;
+  return wing_area(p) / R * (R + hub_offset_of(p)) / kinematic_viscosity;
 }
 
 /// Where the tips of two wings meet in the plane between them [rad]: 90 deg, and by as much more as the shoulders leave
@@ -74,7 +74,7 @@ template <Scalar S>
 S stroke_where_wings_meet(const Planform<S>& p) {
   using std::asin;
   if (p.shape == PlanformShape::moments) return S(0.5 * pi);
-  const S room = p.shoulder_distance / (S(2.0) * (length_of(p) + p.hub_offset));
+  const S room = p.shoulder_distance / (S(2.0) * (length_of(p) + hub_offset_of(p)));
   if (!(value_of(room) < 1.0)) return S(std::numeric_limits<double>::infinity());
   return S(0.5 * pi) + asin(room);
 }

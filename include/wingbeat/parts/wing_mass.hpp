@@ -55,7 +55,7 @@ template <Scalar S>
 WingMass<S> wing_mass(const WingMaterial<S>& material, const Planform<S>& p) {
   const S& sigma = material.areal_density;
   const S& lambda = material.spar_density;
-  const S d = p.hub_offset;
+  const S d = hub_offset_of(p);
   const S R = length_of(p);
   const S tip = d + R;
   const PitchChordMoments<S> s = pitch_chord_moments(p, S(1.0));

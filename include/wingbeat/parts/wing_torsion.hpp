@@ -99,8 +99,8 @@ WingTorsion<S> wing_torsion(const Planform<S>& p, const S& count, const S& stiff
   return {count * stiffness,
           count * damping,
           length_of(p),
-          tabulated ? S(1.0) : detail::root_chord_of(p),
-          p.hub_offset,
+          tabulated ? p.scale : detail::root_chord_of(p),
+          hub_offset_of(p),
           count,
           span_strips(p.shape, p.chord_table)};
 }

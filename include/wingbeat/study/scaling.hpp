@@ -9,7 +9,7 @@
 namespace wingbeat {
 
 enum class ScaledPart {
-  wing,    ///< outline, masses and moments of the wings; the drive stays
+  wing,    ///< outline, masses and moments of the wings; drive and body, with the distance of the shoulders, stay
   vehicle  ///< everything
 };
 

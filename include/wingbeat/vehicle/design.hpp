@@ -169,7 +169,7 @@ struct TorsionDesign {
 template <Scalar S>
 struct WingDesign {
   S count = S(2);    ///< N_w of one motor
-  S inertia = S(0);  ///< J_w of ONE wing about its hinge [kg m2]
+  S inertia = S(0);  ///< J_w of ONE wing about its hinge at planform.scale 1 [kg m2]
   Planform<S> planform;
   /// Direct: resonance of rotor and wings on their springs [Hz]; given, the inertia follows: J_w = k/(2 pi f)^2 - J/N_w
   std::optional<S> resonance;
@@ -180,11 +180,13 @@ struct WingDesign {
   std::optional<S> pitch_inertia;  ///< I_psi of one wing about its leading edge [kg m2], only with a pitch hinge
   std::optional<S> mass_product;   ///< P = integral r x dm of one wing [kg m2], only with a pitch hinge
   TorsionDesign<S> torsion;
+  bool scale_inertia = true;  ///< inertia, pitch_inertia and mass_product grow with planform.scale
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.count, self.inertia, self.planform, self.resonance, self.areal_density, self.spar_density,
-               self.rib_density, self.rib_count, self.pitch_inertia, self.mass_product, self.torsion);
+               self.rib_density, self.rib_count, self.pitch_inertia, self.mass_product, self.torsion,
+               self.scale_inertia);
   }
 };
 

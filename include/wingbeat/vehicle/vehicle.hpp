@@ -84,6 +84,14 @@ MotorThermal<S> motor_thermal_of(const MotorThermalDesign<S>& t) {
   return thermal;
 }
 
+/// By what the stated moments of inertia of a wing are multiplied to be those of the scaled one, whose materials have
+/// the density of the stated one's: \f$s^5\f$; 1 where they are stated of the scaled wing.
+template <Scalar S>
+S inertia_scale(const WingDesign<S>& wing) {
+  const S& s = wing.planform.scale;
+  return wing.scale_inertia ? S(square(square(s)) * s) : S(1.0);
+}
+
 /// Wings that pitch on the hinges that a design describes, or twist, `count` of them, in air of that density [kg/m3].
 template <Scalar S>
 PitchingWings<S> pitching_wings_of(const Design<S>& design, const S& count, const S& air_density) {
@@ -102,8 +110,9 @@ PitchingWings<S> pitching_wings_of(const Design<S>& design, const S& count, cons
     wings.pitch_inertia = count * drawn->pitch_inertia;
     wings.mass_product = count * drawn->mass_product;
   }
-  if (design.wing.pitch_inertia) wings.pitch_inertia = count * *design.wing.pitch_inertia;
-  if (design.wing.mass_product) wings.mass_product = count * *design.wing.mass_product;
+  if (design.wing.pitch_inertia)
+    wings.pitch_inertia = count * (inertia_scale(design.wing) * *design.wing.pitch_inertia);
+  if (design.wing.mass_product) wings.mass_product = count * (inertia_scale(design.wing) * *design.wing.mass_product);
   wings.moments = pitch_chord_moments(design.wing.planform, count);
   if (design.aerodynamics.added_mass) wings.air = pitch_added_mass(air_density, wings.moments);
   if (!p.rotational_lift) wings.rotational_coefficient = S(0.0);
@@ -186,7 +195,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   v.wing_count = M * design.wing.count;
   // Inertia on one spring, spring and drive frequency: of a direct drive any of them may follow from the others.
   const S rotor_share = direct ? v.motor.inertia / v.wing_count : S(0.0);
-  S wing_inertia = design.wing.inertia;
+  S wing_inertia = inertia_scale(design.wing) * design.wing.inertia;
   if (const std::optional<WingMass<S>> drawn = wing_mass(design.wing)) wing_inertia = drawn->inertia;
   S stiffness = design.spring.stiffness ? *design.spring.stiffness : S(0.0);
   if (design.wing.resonance) wing_inertia = stiffness / square(S(two_pi) * *design.wing.resonance) - rotor_share;

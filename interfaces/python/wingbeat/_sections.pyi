@@ -599,6 +599,16 @@ class WingPlanformSection(Section):
         [m5] Range: >= 0. Default: none.
         Only with wing.planform.shape = moments.
         """
+    @property
+    def scale(self) -> Quantity:
+        """s, multiplies length, chords and hub_offset of the outline; s2, s3 and s22 with s^4, s^5 and s^5.
+        Number. Range: > 0. Default: 1.
+        """
+    @property
+    def scale_inertia(self) -> bool:
+        """inertia, pitch_inertia and mass_product grow with s^5; false: they are those of the scaled wing.
+        Range: true or false. Default: true.
+        """
 
 class WingSection(Section):
     @property
