@@ -111,7 +111,7 @@ py::dict find_own(const std::string& name, const std::vector<std::string>& overr
   terms.constraints = constraints;
   terms.evaluate = [&](const Design<double>& design, const DesignPoint& point) {
     const Entered own;
-    const Vehicle<double> vehicle = resolve(design, file.study.options.condition);
+    const Vehicle<double> vehicle = resolve(with_any_pitch_coefficient(design), file.study.options.condition);
     RunResult run;
     run.status = FlappingStatus::flapping;
     run.evidence = point.evidence;

@@ -2,10 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <vector>
 
 #include "cycle/repeat_recorded.hpp"
 #include "wingbeat/solve/linear.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -158,10 +161,53 @@ void follow_amplitude(GradientVehicle vehicle, const SteadyFlapping& orbit, cons
   }
 }
 
+/// metric_gradients() where C_alpha follows, so that the least angle of attack alpha stays: of a metric m
+/// dm/dp - dm/dC dalpha/dp / (dalpha/dC), and by alpha itself dm/dC / (dalpha/dC).
+MetricGradients gradients_at_angle(const Design<double>& design, Condition condition, const SteadyFlapping& orbit,
+                                   std::span<const DesignParameter> parameters, GradientOptions options) {
+  const bool peaks = options.peaks;
+  options.angle_held = false;
+  options.peaks = true;
+  const auto is_angle = [](const DesignParameter& p) { return p.key == aerodynamics_key::angle_of_attack.path; };
+  std::vector<DesignParameter> others;
+  std::copy_if(parameters.begin(), parameters.end(), std::back_inserter(others), std::not_fn(is_angle));
+  const Parameter<double>& C = numeric_parameter<double>(aerodynamics_key::pitch_coefficient.path);
+  others.push_back({std::string(C.path), std::string(C.unit), C.set, numeric_parameter<J>(C.path).set, C.get});
+  const MetricGradients g = metric_gradients(design, condition, orbit, others, options);
+  const auto& by_C = g.by_parameter.back();
+  constexpr std::size_t alpha = std::size_t(Metric::angle_of_attack_min);
+  MetricGradients result;
+  result.regular = g.regular && std::abs(by_C[alpha]) > 0.0;
+  const auto follow = [&](std::array<double, metric_count> slopes) {
+    const double follows = slopes[alpha] / by_C[alpha];
+    for (std::size_t m = 0; m < metric_count; ++m) slopes[m] -= by_C[m] * follows;
+    return slopes;
+  };
+  std::size_t next = 0;
+  for (const DesignParameter& p : parameters) {
+    if (!is_angle(p)) {
+      result.by_parameter.push_back(follow(g.by_parameter[next++]));
+      continue;
+    }
+    auto& slopes = result.by_parameter.emplace_back(by_C);
+    for (double& x : slopes) x *= degrees_per_radian / by_C[alpha];
+  }
+  result.by_voltage = drive_of(design).voltage_sets_frequency ? follow(g.by_voltage) : g.by_voltage;
+  for (int m = 0; !peaks && m < metric_count; ++m) {
+    if (!is_peak(Metric(m), drive_of(design))) continue;
+    result.by_voltage[std::size_t(m)] = absent;
+    for (auto& slopes : result.by_parameter) slopes[std::size_t(m)] = absent;
+  }
+  return result;
+}
+
 }  // namespace
 
 MetricGradients metric_gradients(const Design<double>& design, Condition condition, const SteadyFlapping& orbit,
                                  std::span<const DesignParameter> parameters, const GradientOptions& options) {
+  if (options.angle_held && !orbit.record.empty()) {
+    return gradients_at_angle(design, condition, orbit, parameters, options);
+  }
   MetricGradients result;
   result.by_parameter.resize(parameters.size());
   if (orbit.record.empty()) {  // a cycle simulated in time is no cycle to be repeated

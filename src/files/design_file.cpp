@@ -9,6 +9,7 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
+#include <ranges>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -26,7 +27,6 @@
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
-
 namespace {
 
 std::string message_text(const std::string& file, int line, int column, const std::string& key,
@@ -262,13 +262,14 @@ class Reader {
   bool is_required(const ParameterText& key) const {
     if (key.fallback != "required" || key.has_alternative()) return false;
     // read_coefficients() requires the numbers of a section that is given.
-    if (is_section(key.required_unless)) return false;
-    for (std::string_view rest = key.required_unless; !rest.empty();) {
-      const std::size_t end = std::min(rest.find('|'), rest.size());
-      if (document_.find(rest.substr(0, end))) return false;
-      rest.remove_prefix(std::min(end + 1, rest.size()));
-    }
-    return true;
+    return !is_section(key.required_unless) && !is_spared(key);
+  }
+
+  /// By one of the keys that take its place.
+  bool is_spared(const ParameterText& key) const {
+    return std::ranges::any_of(std::views::split(key.required_unless, '|'), [&](const auto& path) {
+      return document_.find(std::string_view(path.begin(), path.end())) != nullptr;
+    });
   }
 
   /// Each at its own line; validate() sees to what needs another key.
@@ -305,7 +306,7 @@ class Reader {
     const Parameter<double>* second = find_parameter<double>(other);
     const std::string_view section = one.path.substr(0, one.path.rfind('.'));
     if (one.fallback != "required" || !second || !has_place(one) || !document_.has_section(section)) return;
-    if (known_to_be_wrong(other)) return;
+    if (is_spared(one) || known_to_be_wrong(other)) return;
     const std::string one_like_it =
         one.unit.empty() ? fmt::format("the {}", one.range.text) : quantity_example(one.unit);
     // Alternatives of another drive are not offered.

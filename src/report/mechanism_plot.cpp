@@ -39,7 +39,7 @@ std::string drawn(const Vehicle<double>& vehicle, const StrokeRange& stroke, Plo
 }  // namespace
 
 std::string drawn_mechanism(const Design<double>& design, double stroke_amplitude, PlotFormat format) {
-  const Vehicle<double> vehicle = resolve(design);
+  const Vehicle<double> vehicle = resolve(with_any_pitch_coefficient(design));
   const bool fixed = drive_of(vehicle).stroke_is_fixed;
   const StrokeRange stroke = fixed ? stroke_of(vehicle.transmission) : StrokeRange{-stroke_amplitude, stroke_amplitude};
   return drawn(vehicle, stroke, format);

@@ -83,7 +83,7 @@ DomainExcess OptimiseProblem::vehicle_slopes(const Vector& u, Eigen::Index k, co
   up[k] = std::min(1.0, u[k] + step);
   down[k] = std::max(0.0, u[k] - step);
   const auto excess = [&](const Vector& moved) {
-    return domain_excess(resolve(design(moved), study_.options.condition), metrics);
+    return domain_excess(resolve(with_any_pitch_coefficient(design(moved)), study_.options.condition), metrics);
   };
   DomainExcess slopes = excess(up);
   const DomainExcess below = excess(down);

@@ -36,7 +36,8 @@ std::vector<ActiveLimit> Neighbourhood::active() const {
     if (std::size_t(constraints_[i]) >= study.constraints.size()) {
       const DomainLimit limit = DomainLimit(std::size_t(constraints_[i]) - study.constraints.size());
       const bool from_zero = limit == DomainLimit::angle_of_attack;
-      result.push_back({"domain: " + bound_of(limit, resolve(problem_.design(best_), study.options.condition)),
+      result.push_back({"domain: " + bound_of(limit, resolve(with_any_pitch_coefficient(problem_.design(best_)),
+                                                             study.options.condition)),
                         from_zero ? absent : multipliers_[Eigen::Index(i)] / f, true});
       continue;
     }

@@ -132,7 +132,9 @@ void note_domain(const Vehicle<double>& vehicle, RunResult& result) {
 }  // namespace
 
 RunResult run_design(const Design<double>& design, const RunOptions& options) {
-  if (options.angle_of_attack) return detail::run_at_angle_of_attack(design, options);
+  if (options.angle_of_attack || needs_pitch_coefficient(design, options.condition)) {
+    return detail::run_at_angle_of_attack(design, options);
+  }
   require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
           options.tolerance);
   const Supply<double>& supply = design.supply;

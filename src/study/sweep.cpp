@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "study/ensemble_pitch.hpp"
+#include "study/pitch_search.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/study/endurance.hpp"
 #include "wingbeat/study/ensemble_hold.hpp"
@@ -115,6 +117,7 @@ void SweepSolver::gather(SweepColumns& columns, std::size_t begin, std::size_t e
   members_.clear();
   rows_.clear();
   holds_.clear();
+  angles_.clear();
   auto place = places(sweep_, columns.first + begin);
   for (std::size_t row = begin; row < end; ++row, next(sweep_, place)) {
     SweepVariant& variant = variants_[variant_at(sweep_, place)];
@@ -125,7 +128,11 @@ void SweepSolver::gather(SweepColumns& columns, std::size_t begin, std::size_t e
       columns.status[row] = std::int8_t(SweepStatus::invalid);
       continue;
     }
-    members_.push_back({resolve(variant.design, variant.condition), reporting_of(variant.design)});
+    const bool at_angle = needs_pitch_coefficient(variant.design, variant.condition);
+    members_.push_back({at_angle ? resolve(with_any_pitch_coefficient(variant.design), variant.condition)
+                                 : resolve(variant.design, variant.condition),
+                        reporting_of(variant.design)});
+    angles_.push_back(at_angle ? *variant.design.aerodynamics.angle_of_attack : absent);
     rows_.push_back(row);
     if (hold) holds_.push_back(*hold);
   }
@@ -140,7 +147,9 @@ void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t en
   }
   outcomes_.resize(members_.size());
   reached_.assign(members_.size(), FrequencyOutcome::reached);
-  if (sweep_.hold) {
+  if (std::any_of(angles_.begin(), angles_.end(), [](double angle) { return std::isfinite(angle); })) {
+    detail::solve_ensemble_at_angles(members_, angles_, holds_, sweep_.options, start_up_, outcomes_, reached_);
+  } else if (sweep_.hold) {
     solve_ensemble_held(members_, holds_, sweep_.options, start_up_, outcomes_, reached_);
   } else {
     solve_ensemble(members_, sweep_.options, start_up_, outcomes_);
@@ -158,17 +167,20 @@ void SweepSolver::solve(SweepColumns& columns, std::size_t begin, std::size_t en
     for (std::size_t m = 0; m < kept_.size(); ++m) {
       columns.metrics[m][row] = out.metrics.values[std::size_t(kept_[m])];
     }
-    fly(columns, row, members_[n].vehicle.voltage);
+    fly(columns, row, members_[n].vehicle);
   }
 }
 
 /// The metrics of a whole flight, where the sweep selects them.
-void SweepSolver::fly(SweepColumns& columns, std::size_t row, double voltage) const {
+void SweepSolver::fly(SweepColumns& columns, std::size_t row, const Vehicle<double>& found) const {
   const FlightMetrics wanted = flight_metrics(sweep_.options.metrics, sweep_.allow_extrapolation);
   if (!wanted.any()) return;
   SweepDesign point = design_at(sweep_, columns.first + row);
   if (!has_battery(point.design.supply.type)) return;
-  if (sweep_.hold) set_voltage(point.design.supply, voltage);
+  if (sweep_.hold) set_voltage(point.design.supply, found.voltage);
+  if (needs_pitch_coefficient(point.design, point.condition)) {
+    point.design = detail::with_pitch_coefficient(point.design, found.wings.pitch_coefficient);
+  }
   const Endurance flight = endurance_of(point.design, point.condition, sweep_.options.tolerance, {}, wanted);
   for (std::size_t m = 0; m < kept_.size(); ++m) {
     if (Metric(kept_[m]) == Metric::hover) columns.metrics[m][row] = flight.hover;

@@ -1,5 +1,6 @@
 #include "wingbeat/vehicle/design.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "wingbeat/core/text.hpp"
@@ -135,6 +136,13 @@ void validate_added_mass(const Design<double>& d, const Vehicle<double>& v) {
           J_a, own, 90.0 - degrees_per_radian * x, share));
 }
 
+/// An angle of attack stands for the C_alpha that leads to it.
+void validate_angle_of_attack(const AerodynamicsDesign<double>& air) {
+  if (!air.angle_of_attack || !air.angle_of_attack_min) return;
+  throw ParameterError(aerodynamics_key::angle_of_attack.path,
+                       "is held by the stop angle_of_attack_min whatever C_alpha is; give pitch_coefficient beside it");
+}
+
 /// A moment of inertia that is stated grows with the scale or does not; one that follows has no choice.
 void validate_scale(const WingDesign<double>& wing) {
   if (wing.scale_inertia || !(wing.areal_density || wing.resonance)) return;
@@ -172,6 +180,20 @@ void validate_pitching(const Design<double>& d, const Vehicle<double>& v) {
 }
 
 }  // namespace
+
+void throw_missing_pitch_coefficient() {
+  throw ParameterError(aerodynamics_key::angle_of_attack.path,
+                       "stands for a C_alpha that this does not find; give aerodynamics.pitch_coefficient instead, "
+                       "which wingbeat run prints for the vehicle");
+}
+
+Design<double> with_any_pitch_coefficient(Design<double> d) {
+  std::optional<double>& angle = d.aerodynamics.angle_of_attack;
+  if (!angle) return d;
+  angle.reset();
+  if (!(d.aerodynamics.pitch_coefficient > 0.0)) d.aerodynamics.pitch_coefficient = usual_pitch_coefficient;
+  return d;
+}
 
 void validate(const Design<double>& d) {
   for (const Parameter<double>& parameter : parameter_table<double>()) {
@@ -238,9 +260,10 @@ void validate(const Design<double>& d) {
                          "missing: give both thermal resistances, of winding and case, or neither");
   }
 
+  validate_angle_of_attack(air);
   validate_scale(d.wing);
 
-  const Vehicle<double> v = resolve(d);
+  const Vehicle<double> v = resolve(with_any_pitch_coefficient(d));
   if (drive_of(d).rotates) validate(v.transmission);
   if (thermal.time_constant_winding.has_value() != thermal.time_constant_case.has_value()) {
     throw ParameterError(thermal.time_constant_winding ? motor_thermal_key::time_constant_case.path

@@ -47,6 +47,7 @@ constexpr auto wing_rows() {
   constexpr auto wing_resonance = [](auto& d) -> auto& { return d.wing.resonance; };
   constexpr auto areal_density = [](auto& d) -> auto& { return d.wing.areal_density; };
   constexpr auto chord_ratio = [](auto& d) -> auto& { return d.wing.planform.chord_ratio; };
+  constexpr auto angle_of_attack = [](auto& d) -> auto& { return d.aerodynamics.angle_of_attack; };
   using D = Design<S>;
   return std::array{
       choice<S, TransmissionChoice>(
@@ -239,7 +240,6 @@ constexpr auto wing_rows() {
                          [](auto& d) -> auto& { return d.wing.planform.s3; }),
       number<S, Moments>(row(planform_key::s22, "none", "S_22 = N_w integral c^2 r^2 dr of all wings, for added mass"),
                          [](auto& d) -> auto& { return d.wing.planform.s22; }),
-
       number<S>(row(planform_key::scale, "1",
                     "s, multiplies length, chords and hub_offset of the outline; s2, s3 and s22 with s^4, s^5 and s^5"),
                 [](auto& d) -> auto& { return d.wing.planform.scale; }),
@@ -249,6 +249,7 @@ constexpr auto wing_rows() {
                "true",
                "inertia, pitch_inertia and mass_product grow with s^5; false: they are those of the scaled wing"},
               [](const D& d) { return std::string(d.wing.scale_inertia ? "true" : "false"); }),
+
       number<S>(row(pitch_key::stiffness, "none: the pitch law",
                     "k_psi of the hinge about which one wing pitches; given, pitch is a degree of freedom"),
                 [](auto& d) -> auto& { return d.pitch.stiffness; }),
@@ -279,9 +280,16 @@ constexpr auto wing_rows() {
 
       number<S>(row(aerodynamics_key::air_density, "required", "rho, air density", {}, "1.225 kg/m3"),
                 [](auto& d) -> auto& { return d.aerodynamics.air_density; }),
-      number<S, UnderPitchLaw>(row(aerodynamics_key::pitch_coefficient, "required",
-                                   "C_alpha, passive pitching: alpha = pi/2 - C_alpha abs(beta')", {}, "5 ms"),
-                               [](auto& d) -> auto& { return d.aerodynamics.pitch_coefficient; }),
+      replaceable<S, UnderPitchLaw>(
+          row(aerodynamics_key::pitch_coefficient, "required",
+              "C_alpha, passive pitching: alpha = pi/2 - C_alpha abs(beta')", {"angle_of_attack"}, "5 ms"),
+          [](auto& d) -> auto& { return d.aerodynamics.pitch_coefficient; }, angle_of_attack),
+      alternative<S, UnderPitchLaw>(
+          row(aerodynamics_key::angle_of_attack, "required",
+              "angle of attack at the largest abs(beta'), near mid-stroke: C_alpha is found for it at the operating "
+              "point",
+              {"pitch_coefficient"}),
+          angle_of_attack),
       number<S, UnderPitchLaw>(
           row(aerodynamics_key::angle_of_attack_min, "none", "stop of the passive pitching: alpha falls no lower"),
           [](auto& d) -> auto& { return d.aerodynamics.angle_of_attack_min; }),

@@ -69,6 +69,23 @@ TEST_F(Targets, TheAngleOfAttackIsFoundByThePitchCoefficient) {
   EXPECT_THAT(hinge.err, HasSubstr("angle_of_attack: follows from the hinge"));
 }
 
+TEST_F(Targets, AVehicleStatesTheAngleOfAttack) {
+  const std::vector<std::string> key = {"--set", "aerodynamics.angle_of_attack=45 deg"};
+  const Outcome by_key = flapper({"--lift-to-weight", "1", key[0], key[1]});
+  ASSERT_EQ(by_key.status, 0) << by_key.err;
+  EXPECT_EQ(by_key.out, flapper({"--angle-of-attack", "45 deg", "--lift-to-weight", "1"}).out);
+  const Outcome both = flapper({key[0], key[1], key[0], "aerodynamics.angle_of_attack_min=30 deg"});
+  EXPECT_EQ(both.status, 2);
+  EXPECT_THAT(both.err,
+              HasSubstr("aerodynamics.angle_of_attack: is held by the stop angle_of_attack_min whatever C_alpha is; "
+                        "give pitch_coefficient beside it"));
+  // What goes through many operating points with one C_alpha.
+  const Outcome fmu = run({"export-fmu", path("flapper.toml"), key[0], key[1], "-o", path("flapper.fmu")});
+  EXPECT_EQ(fmu.status, 2);
+  EXPECT_THAT(fmu.err, HasSubstr("aerodynamics.angle_of_attack: stands for a C_alpha that this does not find; give "
+                                 "aerodynamics.pitch_coefficient instead, which wingbeat run prints for the vehicle"));
+}
+
 TEST_F(Targets, ThePowerIsFoundByTheVoltage) {
   const Json json = flapper({"--power", "500 mW", "--json"}).json();
   EXPECT_NEAR(json["power_electrical_w"].get<double>(), 0.5, 1e-6);
@@ -86,6 +103,11 @@ TEST_F(Targets, ScaleWritesALargerVehicle) {
   EXPECT_THAT(o.out, HasSubstr("wing.planform.length"));
   EXPECT_THAT(read(path("larger.toml")), HasSubstr("with wings 1.1 times as large"));
   EXPECT_EQ(run({"run", path("larger.toml")}).status, 0);
+  // As large by one number of the vehicle.
+  const Json larger = run({"run", path("larger.toml"), "--json"}).json();
+  const Json scaled = flapper({"--set", "wing.planform.scale=1.1", "--json"}).json();
+  EXPECT_NEAR(scaled["lift_mean_n"].get<double>() / larger["lift_mean_n"].get<double>(), 1.0, 1e-6);
+  EXPECT_EQ(flapper({"--set", "wing.planform.scale=0"}).status, 2);
   const Json json = run({"scale", path("flapper.toml"), "--vehicle", "0.5", "--json"}).json();
   EXPECT_EQ(json["factor"], 0.5);
   for (const Json& p : json["parameters"]) {
@@ -103,11 +125,6 @@ TEST_F(Targets, PwmReachesItByItsDuty) {
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_NEAR(o.json()["supply_duty"].get<double>(), 0.792, 1e-3);
   const std::string low = "supply={type=\"pwm\", voltage=\"7 V\", duty=0.2, frequency=\"20 kHz\"}";
-  // As large by one number of the vehicle.
-  const Json larger = run({"run", path("larger.toml"), "--json"}).json();
-  const Json scaled = flapper({"--set", "wing.planform.scale=1.1", "--json"}).json();
-  EXPECT_NEAR(scaled["lift_mean_n"].get<double>() / larger["lift_mean_n"].get<double>(), 1.0, 1e-6);
-  EXPECT_EQ(flapper({"--set", "wing.planform.scale=0"}).status, 2);
   EXPECT_THAT(flapper({"--lift-to-weight", "1", "--set", low}).err,
               HasSubstr("more than the 7 V that the supply gives"));
   EXPECT_THAT(flapper({"--lift-to-weight", "2", "--set", low}).err, HasSubstr("; a duty of 1 gives 7 V"));

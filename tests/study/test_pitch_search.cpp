@@ -4,11 +4,14 @@
 #include <cmath>
 #include <filesystem>
 
+#include "study/held_differences.hpp"
 #include "vehicle/reference_vehicle.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/run.hpp"
+#include "wingbeat/study/sweep.hpp"
+#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
 namespace {
@@ -79,6 +82,139 @@ TEST(PitchSearch, GoesBackFromTrialsThatLeaveTheCoefficientsRange) {
     ASSERT_TRUE(r.pitch_coefficient.has_value()) << start << ": " << describe(r);
     EXPECT_NEAR(*r.pitch_coefficient / *known.pitch_coefficient, 1.0, 1e-6) << start;
   }
+}
+
+Design<double> at_angle(double angle) {
+  Design<double> d = reference_design();
+  d.wing.planform = {PlanformShape::semi_ellipse, 63e-3, 25e-3};
+  d.aerodynamics.pitch_coefficient = 0.0;
+  d.aerodynamics.angle_of_attack = angle * degree;
+  return d;
+}
+
+TEST(PitchSearch, ADesignThatStatesTheAngleRunsAsWithTheOption) {
+  for (const RunOptions& options : {RunOptions{}, RunOptions{.frequency = 20.0}, RunOptions{.lift = 0.01}}) {
+    const Design<double> d = at_angle(45.0);
+    Design<double> plain = d;
+    plain.aerodynamics.angle_of_attack.reset();
+    RunOptions asked = options;
+    asked.angle_of_attack = 45.0 * degree;
+    const RunResult by_key = run_design(d, options), by_option = run_design(plain, asked);
+    ASSERT_EQ(by_key.status, FlappingStatus::flapping) << describe(by_key);
+    EXPECT_EQ(by_key.pitch_coefficient, by_option.pitch_coefficient);
+    EXPECT_FALSE(by_key.design.aerodynamics.angle_of_attack);
+    EXPECT_EQ(by_key.metrics[Metric::power_electrical], by_option.metrics[Metric::power_electrical]);
+    // An option goes before the key.
+    asked.angle_of_attack = 30.0 * degree;
+    EXPECT_NEAR(run_design(d, asked).metrics[Metric::angle_of_attack_min], 30.0, 1e-5);
+  }
+  // Without air the angle has no effect.
+  EXPECT_EQ(run_design(at_angle(45.0), {.condition = Condition::vacuum}).status, FlappingStatus::flapping);
+  EXPECT_FALSE(run_design(at_angle(45.0), {.condition = Condition::vacuum}).pitch_coefficient);
+}
+
+TEST(PitchSearch, WhatDoesNotFindCAlphaRefusesTheDesign) {
+  const Design<double> d = at_angle(45.0);
+  EXPECT_NO_THROW(validate(d));
+  try {
+    resolve(d);
+    FAIL() << "resolved";
+  } catch (const ParameterError& error) {
+    EXPECT_STREQ(error.what(),
+                 "aerodynamics.angle_of_attack: stands for a C_alpha that this does not find; give "
+                 "aerodynamics.pitch_coefficient instead, which wingbeat run prints for the vehicle");
+  }
+  EXPECT_NO_THROW(resolve(d, Condition::vacuum));
+  Design<double> stopped = d;
+  stopped.aerodynamics.angle_of_attack_min = 0.5;
+  EXPECT_THROW(validate(stopped), ParameterError);
+}
+
+/// Each design of a sweep against a run of its own.
+void expect_sweep_as_runs(Sweep& sweep, int flapping) {
+  const std::uint64_t count = sweep.size();
+  SweepColumns columns;
+  columns.resize(count, metric_count);
+  sweep.options.metrics.set();
+  sweep.options.metrics.reset(std::size_t(Metric::hover)).reset(std::size_t(Metric::endurance));
+  columns.resize(count, sweep.options.metrics.count());
+  SweepSolver(sweep, start_up_in_time()).solve(columns, 0, count);
+  int flaps = 0, batched = 0;
+  for (std::uint64_t n = 0; n < count; ++n) {
+    const SweepDesign one = design_at(sweep, n);
+    DesignPointOptions options;
+    options.condition = one.condition;
+    options.hold = one.hold;
+    const DesignPoint point = design_point(one.design, options, {}, start_up_in_time());
+    ASSERT_EQ(columns.status[n], std::int8_t(point.status)) << n << ": " << describe(point);
+    if (point.status != SweepStatus::flapping) continue;
+    ++flaps;
+    batched += !columns.recomputed[n];
+    std::size_t column = 0;
+    for (int m = 0; m < metric_count; ++m) {
+      if (!sweep.options.metrics[std::size_t(m)]) continue;
+      const double value = columns.metrics[column++][n], expected = point.metrics.values[std::size_t(m)];
+      if (m == int(Metric::floquet_multiplier_max)) continue;
+      if (m == int(Metric::angle_of_attack_min)) {
+        EXPECT_NEAR(value, *one.design.aerodynamics.angle_of_attack / degree, 1e-4);
+      }
+      if (std::isnan(expected)) continue;
+      EXPECT_NEAR(value, expected, 5e-6 * std::abs(expected) + 1e-9 * point.metrics[Metric::power_electrical])
+          << n << " " << metric_info(Metric(m)).key;
+    }
+  }
+  EXPECT_GE(flaps, flapping);
+  EXPECT_GT(batched, has_packs ? flaps / 2 : -1);
+}
+
+SweptQuantity swept(const char* key, std::vector<double> values) {
+  SweptQuantity q;
+  q.key = q.name = key;
+  q.set = numeric_parameter<double>(key).set;
+  q.values = std::move(values);
+  return q;
+}
+
+Sweep sweep_at_angles() {
+  Sweep sweep;
+  sweep.variants.push_back({at_angle(45.0), Condition::air, true});
+  SweepAxis angles, lengths;
+  angles.quantities.push_back(swept("aerodynamics.angle_of_attack", {25.0 * degree, 45.0 * degree, 60.0 * degree}));
+  angles.count = 3;
+  lengths.quantities.push_back(swept("wing.planform.length", {40e-3, 50e-3, 60e-3, 70e-3, 80e-3}));
+  lengths.count = 5;
+  sweep.axes = {angles, lengths};
+  sweep.variant_stride = {0, 0};
+  return sweep;
+}
+
+TEST(PitchSearch, EachDesignOfASweepFindsItsOwn) {
+  Sweep at_voltage = sweep_at_angles();
+  expect_sweep_as_runs(at_voltage, 12);
+  Sweep at_lift = sweep_at_angles();
+  at_lift.hold = Hold{Held::lift, 0.008};
+  expect_sweep_as_runs(at_lift, 10);
+  // What does not flap has no angle.
+  Sweep stalled = sweep_at_angles();
+  stalled.variants[0].design.friction = {FrictionLaw::constant, 1.0};
+  SweepColumns columns;
+  columns.resize(15, 0);
+  stalled.options.metrics = {};
+  SweepSolver(stalled, start_up_in_time()).solve(columns, 0, 15);
+  for (const std::int8_t status : columns.status) EXPECT_NE(status, std::int8_t(SweepStatus::flapping));
+}
+
+TEST(PitchSearch, DerivativesHoldTheAngle) {
+  const std::vector<const char*> keys{"aerodynamics.angle_of_attack", "wing.planform.length", "supply.voltage"};
+  const std::vector<Metric> metrics{Metric::frequency, Metric::power_electrical, Metric::lift_mean};
+  DesignPointOptions options;
+  options.tolerance = 1e-10;
+  const DesignPoint point = expect_held_derivatives(at_angle(45.0), options, keys, metrics, 1e-5);
+  ASSERT_EQ(point.status, SweepStatus::flapping);
+  EXPECT_GT(point.pitch_coefficient, 0.0);
+  options.hold = Hold{Held::lift, 0.01};
+  expect_held_derivatives(at_angle(45.0), options, {"aerodynamics.angle_of_attack", "wing.planform.length"},
+                          {Metric::power_electrical, Metric::voltage}, 1e-5);
 }
 
 TEST(PitchSearch, WhatCannotBeIsSaid) {

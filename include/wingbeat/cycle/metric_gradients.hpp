@@ -30,6 +30,7 @@ struct GradientOptions {
   Held held = Held::voltage;
   bool peaks = true;  ///< false: the metrics that are peaks (is_peak()) have values alone, their derivatives are absent
   std::span<const double> crank_angles = {};  ///< instants of the cycle wanted, 0 to 2 pi [rad]
+  bool angle_held = false;  ///< C_alpha follows, so that the least angle of attack stays; of metric_gradients() alone
 };
 
 /// True of metrics whose derivatives cost a search for peaks along the cycle, or as much.
@@ -52,7 +53,8 @@ struct MetricGradients {
 };
 
 /// orbit_gradient() of a design for any number of parameters, gradient_parameters at a time. A parameter that the
-/// design has no place or no value for throws ParameterError. The record's voltage replaces the design's.
+/// design has no place or no value for throws ParameterError. The record's voltage replaces the design's. With
+/// options.angle_held the design states the C_alpha that was found, and aerodynamics.angle_of_attack is a parameter.
 MetricGradients metric_gradients(const Design<double>& design, Condition condition, const SteadyFlapping& orbit,
                                  std::span<const DesignParameter> parameters, const GradientOptions& options = {});
 

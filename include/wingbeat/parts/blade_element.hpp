@@ -179,6 +179,7 @@ struct BladeElement {
 namespace aerodynamics_key {
 inline constexpr ParameterKey air_density{"aerodynamics.air_density", "kg/m3", range::not_negative};
 inline constexpr ParameterKey pitch_coefficient{"aerodynamics.pitch_coefficient", "s", range::not_negative};
+inline constexpr ParameterKey angle_of_attack{"aerodynamics.angle_of_attack", "rad", range::acute};
 inline constexpr ParameterKey angle_of_attack_min{"aerodynamics.angle_of_attack_min", "rad", range::zero_to_acute};
 }  // namespace aerodynamics_key
 

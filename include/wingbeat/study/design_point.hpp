@@ -34,6 +34,7 @@ struct DesignPoint {
   std::string error;                     ///< what() of the ParameterError of an invalid design
   Metrics<double> metrics;               ///< all absent unless flapping
   double voltage = absent;               ///< mean one of its supply, or amplitude; what a hold found [V]
+  double pitch_coefficient = absent;     ///< C_alpha that was found for an angle of attack that the design states [s]
   DomainStatus domain;                   ///< limits of the model that are exceeded; none unless flapping
   DomainExcess domain_excess{};          ///< by how much; only where flapping
   /// Derivatives of domain_excess by each parameter through the metrics alone (domain_excess_slopes); as `gradients`.
@@ -43,7 +44,8 @@ struct DesignPoint {
 };
 
 /// Solves a design by the scalar solver; a design out of its physical range has the status invalid. Throws
-/// ParameterError for a parameter without a value in the design.
+/// ParameterError for a parameter without a value in the design. Where the design states an angle of attack C_alpha is
+/// found for it, and follows in the derivatives.
 DesignPoint design_point(const Design<double>& design, const DesignPointOptions& options,
                          std::span<const DesignParameter> parameters, const StartUp& start_up);
 

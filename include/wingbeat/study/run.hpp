@@ -34,7 +34,8 @@ struct RunOptions {
   std::optional<double> lift = {};
   std::optional<double> power = {};  ///< [W]; given instead of both: the same for the mean electrical power
   /// [rad], > 0, < pi/2; given: C_alpha is replaced by the one that leads to this least angle of attack of the cycle,
-  /// which the wings have at mid-stroke
+  /// which the wings have at mid-stroke. It goes before the angle that a design states, for which C_alpha is found,
+  /// too.
   std::optional<double> angle_of_attack = {};
   bool allow_extrapolation = false;  ///< a search for a frequency, a lift or a power may leave the model's domain
   int waveform_rows = 0;             ///< instants of one cycle to return, both ends included; 0: none
@@ -61,7 +62,7 @@ struct RunResult {
   std::optional<FrequencySearch> search;    ///< where a frequency or a lift was asked for
   std::optional<double> pitch_coefficient;  ///< C_alpha that was found for an angle of attack [s]
   std::optional<double> mean_voltage;       ///< of a pwm supply, which Method::orbit took for constant [V]
-  Design<double> design;                    ///< as computed: with the voltage or duty that was found
+  Design<double> design;                    ///< as computed: with the voltage or duty and the C_alpha found
 };
 
 /// Computes one validated design. Throws ParameterError for a crank on a sine supply where Method::orbit, a frequency

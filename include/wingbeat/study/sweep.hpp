@@ -104,7 +104,7 @@ class SweepSolver {
 
  private:
   void gather(SweepColumns& columns, std::size_t begin, std::size_t end);
-  void fly(SweepColumns& columns, std::size_t row, double voltage) const;
+  void fly(SweepColumns& columns, std::size_t row, const Vehicle<double>& found) const;
 
   const Sweep& sweep_;
   StartUp start_up_;
@@ -113,6 +113,7 @@ class SweepSolver {
   std::vector<EnsembleMember> members_;
   std::vector<std::size_t> rows_;  ///< of the members
   std::vector<Hold> holds_;
+  std::vector<double> angles_;  ///< of attack that C_alpha is found for [rad]; NaN of members without
   std::vector<EnsembleOutcome> outcomes_;
   std::vector<FrequencyOutcome> reached_;
 };

@@ -221,12 +221,14 @@ struct AerodynamicsDesign {
   S kinematic_viscosity = S(air_kinematic_viscosity);  ///< nu [m2/s], of the Reynolds number alone
   /// Reynolds numbers for which the coefficients hold [1]; those of the named set unless given.
   std::optional<S> reynolds_number_min, reynolds_number_max;
+  /// In place of pitch_coefficient: the angle of attack at the largest |beta'| that C_alpha is found for [rad].
+  std::optional<S> angle_of_attack;
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.air_density, self.pitch_coefficient, self.coefficients_name, self.coefficients,
                self.angle_of_attack_min, self.added_mass, self.kinematic_viscosity, self.reynolds_number_min,
-               self.reynolds_number_max);
+               self.reynolds_number_max, self.angle_of_attack);
   }
 };
 

@@ -158,10 +158,26 @@ void set_mean_voltage(Vehicle<S>& v, const S& voltage) {
   v.voltage = voltage;
 }
 
+/// True where C_alpha is still to be found for an angle of attack. Without air it has no effect.
+template <Scalar S>
+bool needs_pitch_coefficient(const Design<S>& design, Condition condition) {
+  return condition == Condition::air && design.aerodynamics.angle_of_attack.has_value() && follows_pitch_law(design);
+}
+
+[[noreturn]] void throw_missing_pitch_coefficient();
+
+/// C_alpha [s] with which searches for one begin.
+inline constexpr double usual_pitch_coefficient = 5e-3;
+
+/// The design with a C_alpha > 0 in place of the angle of attack that it states: for what no C_alpha changes.
+Design<double> with_any_pitch_coefficient(Design<double> design);
+
 /// The vehicle that a design describes, in a condition, its motor's constants as stated, at the reference temperature.
-/// Does not check ranges: validate(design) does.
+/// Does not check ranges: validate(design) does. Throws ParameterError for a design that states an angle of attack, for
+/// which C_alpha is to be found first (study/pitch_search.hpp).
 template <Scalar S>
 Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air) {
+  if (needs_pitch_coefficient(design, condition)) throw_missing_pitch_coefficient();
   Vehicle<S> v;
   v.voltage = mean_voltage(design.supply);
   v.source_resistance = source_resistance(design.supply);

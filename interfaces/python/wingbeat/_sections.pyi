@@ -722,7 +722,14 @@ class AerodynamicsSection(Section):
     @property
     def pitch_coefficient(self) -> Quantity | None:
         """C_alpha, passive pitching: alpha = pi/2 - C_alpha abs(beta').
-        [s] Range: >= 0. Default: required unless pitch.stiffness or wing.torsion.stiffness.
+        [s] Range: >= 0. Default: required or angle_of_attack unless pitch.stiffness or wing.torsion.stiffness.
+        Instead of aerodynamics.angle_of_attack.
+        """
+    @property
+    def angle_of_attack(self) -> Quantity | None:
+        """angle of attack at the largest abs(beta'), near mid-stroke: C_alpha is found for it at the operating point.
+        [rad] Range: > 0, < pi/2. Default: required or pitch_coefficient unless pitch.stiffness or wing.torsion.stiffness.
+        Instead of aerodynamics.pitch_coefficient.
         """
     @property
     def angle_of_attack_min(self) -> Quantity | None:

@@ -132,7 +132,7 @@ Json differentiated(const Design<double>& design, const std::vector<std::string>
 }
 
 Json mechanism_of(const Design<double>& design, const std::vector<double>& angles, Columns& columns) {
-  const Vehicle<double> vehicle = resolve(design, Condition::air);
+  const Vehicle<double> vehicle = resolve(with_any_pitch_coefficient(design), Condition::air);
   const AnyTransmission<double>& transmission = vehicle.transmission;
   const bool rotates = drive_of(vehicle).rotates;
   const double wing = drawn_wing_length(transmission);
