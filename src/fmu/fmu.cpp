@@ -78,8 +78,11 @@ FmuContent fmu_content(const Design<double>& design, const FmuOptions& options) 
   if (is_of_further_kind(vehicle) || vehicle.electronics.efficiency != 1.0) {
     const char* section = design.piezo.force_per_volt     ? "piezo"
                           : design.electronics.efficiency ? "electronics"
-                                                          : "wing.torsion";
-    throw ParameterError(section, "an FMU does not know it yet: `wingbeat run` and Simulation do");
+                          : design.wing.torsion.stiffness ? "wing.torsion"
+                                                          : "aerodynamics.angle_of_attack_min";
+    const bool beside = jumps_at_pitch_stop(vehicle);
+    throw ParameterError(section, std::string("an FMU does not know it ") + (beside ? "beside added_mass " : "") +
+                                      "yet: `wingbeat run` and Simulation do");
   }
   if (has_friction(vehicle.pitch.hinge) || vehicle.voltage_offset != 0.0) {
     throw ParameterError(has_friction(vehicle.pitch.hinge) ? "pitch.friction" : "supply.offset",

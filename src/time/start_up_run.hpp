@@ -46,7 +46,7 @@ class CycleModel : public TimeModel {
   /// Not kinks that the integrator steps over.
   bool ends_piece(std::size_t k) const {
     const bool is_jump = (k == turn && has_friction(vehicle.pitch.hinge)) || k == bridge || k == limit;
-    return is_jump || k == force || k == standstill || k == jam || k == stop;
+    return is_jump || k == force || k == standstill || k == jam || k == stop || k == pitch_bound;
   }
 };
 

@@ -37,7 +37,8 @@ TimeModel::TimeModel(const Vehicle<double>& v, const Supply<double>& on)
       force_matters(force_has_branches(v)),
       wings_pitch(pitches(v)),
       further(is_of_further_kind(v)),
-      jumps_(jumps_at_rest(v)) {
+      jumps_(jumps_at_rest(v)),
+      jumps_at_bound_(jumps_at_pitch_stop(v)) {
   if (is_given(vehicle.piezo)) validate(vehicle.piezo);
   else validate(vehicle.motor);
   if (!direct) validate(vehicle.transmission);
@@ -65,6 +66,7 @@ void TimeModel::start(const Coordinates<double>& from) {
   coupled = int(indices.count);
   wings_pitch = pitches(vehicle);
   further = is_of_further_kind(vehicle);
+  jumps_at_bound_ = jumps_at_pitch_stop(vehicle);
   wingless = vehicle.wing_count * vehicle.wing_inertia == 0.0 && vehicle.wing_count * vehicle.spring.stiffness == 0.0 &&
              vehicle.wings.air_density * vehicle.wings.s3 == 0.0;
   constant_friction = breakaway_torque(vehicle);
@@ -75,6 +77,11 @@ void TimeModel::start(const Coordinates<double>& from) {
     now.moving.current = current_now();
   }
   if (is_clamped(vehicle.pitch.hinge)) now.held = true;
+  if (jumps_at_bound_) {
+    double y[max_unknowns];
+    unknowns(y);
+    now.pitching = sign_of(pitch_margin_at(y));
+  }
   find_jams();
   scale_to(supply.voltage);
   now.jammed = !wingless && uniqueness_now() <= smallest_margin;
@@ -186,6 +193,7 @@ Mode<double> TimeModel::mode() const {
   mode.direction = now.direction;
   mode.force = now.force;
   mode.turn = now.turn;
+  mode.pitching = now.pitching;
   if (now.held) mode.held = -1.0;
   if (now.stuck) mode.slip = -1.0;
   if (now.blocked) mode.bridge = -1.0;

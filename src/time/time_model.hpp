@@ -35,6 +35,7 @@ class TimeModel {
     double turn = 1.0;                  ///< as of Mode, where friction of that joint depends on it
     bool blocked = false;               ///< electronics let no current flow back
     bool limited = false;               ///< they limit the current
+    double pitching = 1.0;              ///< as of Mode, where the accelerations jump with it
     double impact_loss = 0.0;           ///< energy that stops have taken in impacts so far [J]
     CycleIntegrals<double> impulses{};  ///< what impacts have added to the integrals so far
 
@@ -45,7 +46,7 @@ class TimeModel {
       Coordinates<double>::each(self.moving, use);
       use(self.direction), use(self.force), use(self.force_known), use(self.switched_voltage), use(self.stuck);
       use(self.leaving), use(self.jammed), use(self.switches), use(self.held), use(self.turn), use(self.blocked);
-      use(self.limited), use(self.impact_loss);
+      use(self.limited), use(self.pitching), use(self.impact_loss);
       for (auto& x : self.impulses) use(x);
     }
   };
@@ -61,6 +62,7 @@ class TimeModel {
     local_turn,  ///< of a twisting wing, where its pitch is reported
     bridge,
     limit,
+    pitch_bound,  ///< of the angle of attack, where the accelerations jump with it
     indicator_count
   };
 
@@ -196,9 +198,11 @@ class TimeModel {
   void settle_electronics();
   double pressing(const double* y) const;
   double surplus_voltage(double i) const;
+  double pitch_margin_at(const double* y) const;
 
   Coordinates<double> start_;
-  bool jumps_;  ///< jumps_at_rest()
+  bool jumps_;           ///< jumps_at_rest()
+  bool jumps_at_bound_;  ///< jumps_at_pitch_stop()
 };
 
 }  // namespace wingbeat::detail

@@ -68,6 +68,7 @@ std::array<double, TimeModel::indicator_count> TimeModel::indicators(double t, c
     if (std::isfinite(highest)) values[limit] = (now.limited ? beyond - highest : highest - i) / current_scale;
   }
   if (now.stuck && !wings_pitch) return values;
+  if (jumps_at_bound_) values[pitch_bound] = pitch_margin_at(y);
   PitchMotion<double> m;
   if (!wingless) m = motion(t, y);
   if (indices.pitching) {
@@ -112,7 +113,8 @@ void TimeModel::begin_piece() {
 
 std::array<int, TimeModel::indicator_count> TimeModel::directions() const {
   const int turning = has_friction(vehicle.pitch.hinge) ? int(-now.turn) : 0, held_current = indices.inductive ? -1 : 0;
-  return {int(-now.force), now.stuck ? -1 : int(-now.direction), -1, 0, 0, -1, turning, 0, held_current, held_current};
+  return {int(-now.force),   now.stuck ? -1 : int(-now.direction), -1, 0, 0, -1, turning, 0, held_current, held_current,
+          int(-now.pitching)};
 }
 
 void TimeModel::handle(std::size_t indicator) {
@@ -153,6 +155,15 @@ void TimeModel::handle(std::size_t indicator) {
     now.limited = !now.limited;
     if (now.limited) now.moving.current = vehicle.electronics.current_max;
   }
+  if (indicator == pitch_bound) {
+    now.pitching = -now.pitching;
+    now.force_known = false;  // it jumps
+  }
+}
+
+/// How far the angle of attack is from its bound, as pitch_margin() [rad].
+double TimeModel::pitch_margin_at(const double* y) const {
+  return pitch_margin(vehicle.wings, std::abs(kinematics(y[0]).stroke_slope * y[1]));
 }
 
 /// Voltage left for the current beyond that of i [V].
@@ -190,6 +201,14 @@ bool TimeModel::branch_lost() {
     if (below || (!now.limited && i > highest + 1e-9 * current_scale)) {
       settle_electronics();
       return now.blocked || now.limited;
+    }
+  }
+  if (jumps_at_bound_) {
+    double y[max_unknowns];
+    unknowns(y);
+    if (now.pitching * pitch_margin_at(y) < -1e-9) {
+      now.pitching = -now.pitching;
+      return true;
     }
   }
   if (now.stuck || !jumps_) return false;

@@ -114,17 +114,15 @@ void validate_bridge(const Design<double>& d) {
 }
 
 /// Added mass takes inertia away where the wings pitch fast (model.md section 10): what is left must stay positive at
-/// every angle of attack from 0 to 90 deg, or the equations of motion have no unique solution.
+/// every angle of attack from the stop of the pitching or 0 to 90 deg, or the equations of motion have no unique
+/// solution. At the stop itself the air's inertia is positive.
 void validate_added_mass(const Design<double>& d, const Vehicle<double>& v) {
   const double J_a = v.wings.added_inertia;
   if (!(J_a > 0.0)) return;
-  if (d.aerodynamics.angle_of_attack_min) {
-    throw ParameterError("aerodynamics.added_mass",
-                         "the wings' inertia would jump where their pitching meets its stop: not with "
-                         "angle_of_attack_min");
-  }
   if (!(v.wings.pitch_coefficient > 0.0)) return;
-  constexpr double x = 1.2278223736171916;  // C_alpha |beta'| where the share is least: 1.5 sin(2 x) + x cos(2 x) = 0
+  // C_alpha |beta'| where the share is least, to which it falls from 0: 1.5 sin(2 x) + x cos(2 x) = 0
+  constexpr double least = 1.2278223736171916;
+  const double x = std::min(least, 0.5 * pi - d.aerodynamics.angle_of_attack_min.value_or(0.0));
   const double share = square(std::cos(x)) - x * std::sin(x) * std::cos(x);
   const double own = v.wing_count * v.wing_inertia + (drive_of(d).rotates ? 0.0 : v.motor.inertia);
   if (own + share * J_a > 0.0) return;

@@ -257,16 +257,83 @@ TEST(AddedMass, ThatLeavesNoInertiaIsRefused) {
   EXPECT_NO_THROW(validate(with_share(5.0)));
 }
 
-TEST(AddedMass, WithAStopOfThePitchingIsRefused) {
-  Design<double> d = with_added_mass();
+/// Wings that reach a stop of their pitching at about half of their largest stroke speed.
+Design<double> with_stop(bool springs = false) {
+  Design<double> d = with_added_mass(springs);
+  d.aerodynamics.pitch_coefficient = 10e-3;
   d.aerodynamics.angle_of_attack_min = 0.8;
-  try {
+  return d;
+}
+
+// Kinetic energy of the air as a function of the stroke velocity has no jump at the stop, and its slope by the velocity
+// is the momentum's on either side.
+TEST(AddedMass, IsConservativeAtAStopOfThePitching) {
+  const Vehicle<double> v = resolve(with_stop());
+  const double at_stop = stroke_speed_at(v.wings, 0.8);
+  const auto energy = [&](double velocity) {
+    return added_energy(v.wings, aero_loads(v.wings, std::abs(velocity)).angle_of_attack, velocity);
+  };
+  EXPECT_NEAR(energy(at_stop * (1.0 + 1e-12)) / energy(at_stop * (1.0 - 1e-12)), 1.0, 1e-11);
+  double largest = 0.0;
+  for (const double share : {0.2, 0.6, 0.95, 1.05, 1.4, 2.0, -0.6, -1.4}) {
+    const double velocity = share * at_stop, step = 1e-4 * at_stop;
+    const double slope = (energy(velocity + step) - energy(velocity - step)) / (2.0 * step);
+    const double inertia = aero_loads(v.wings, std::abs(velocity)).added_inertia;
+    EXPECT_NEAR(inertia * velocity, slope, 1e-7 * std::abs(v.wings.added_inertia * velocity)) << share;
+    largest = std::max(largest, inertia);
+  }
+  // What jumps is the inertia.
+  const double before = aero_loads(v.wings, 0.999999 * at_stop).added_inertia;
+  const double beyond = aero_loads(v.wings, 1.000001 * at_stop).added_inertia;
+  EXPECT_GT(beyond - before, 0.2 * v.wings.added_inertia);
+}
+
+TEST(AddedMass, OrbitsAtAStopOfThePitchingAgreeWithTheSimulation) {
+  std::mt19937_64 random(20261127);
+  const auto uniform = [&](double a, double b) { return std::uniform_real_distribution<double>(a, b)(random); };
+  int cranks = 0, direct = 0, at_stop = 0;
+  for (int n = 0; n < 200; ++n) {
+    const bool crank = n % 4 != 3;
+    Design<double> d = crank ? random_design(random, 1.5) : random_direct_design(random, n % 8 == 7);
+    d.aerodynamics.angle_of_attack_min = uniform(0.2, 1.3);
+    d.aerodynamics.pitch_coefficient = std::max(d.aerodynamics.pitch_coefficient, 1e-3) * uniform(0.7, 3.0);
+    d.aerodynamics.added_mass = true;
+    d.wing.planform.s22 = 4.17e-8 * d.wing.inertia / 7.205e-8 * uniform(0.3, 3.0);
     validate(d);
-    FAIL() << "accepted";
-  } catch (const ParameterError& error) {
-    EXPECT_STREQ(error.what(),
-                 "aerodynamics.added_mass: the wings' inertia would jump where their pitching meets its stop: not with "
-                 "angle_of_attack_min");
+    const Vehicle<double> v = resolve(d);
+    const auto [orbit, time] = orbit_and_simulation(v);
+    ASSERT_EQ(orbit.status, time.status) << n << ": " << describe(orbit.evidence) << " / " << describe(time.evidence);
+    const std::array<EnsembleMember, 1> member = {{{v, {}}}};
+    std::array<EnsembleOutcome, 1> pack;
+    solve_ensemble(member, {.tolerance = 1e-7}, start_up_in_time(), pack);
+    ASSERT_EQ(orbit.status, pack[0].status) << n;
+    if (orbit.status != FlappingStatus::flapping) continue;
+    EXPECT_TRUE(pack[0].scalar) << n;
+    ++(crank ? cranks : direct);
+    at_stop += pitch_margin(v.wings, orbit.metrics[Metric::flapping_velocity_peak]) < 0.0;
+    std::string where;
+    ASSERT_TRUE(time.metrics) << n;
+    EXPECT_LT(metrics_apart(orbit.metrics, *time.metrics, where), 1e-6) << "vehicle " << n << " in time, " << where;
+    EXPECT_LT(metrics_apart(orbit.metrics, pack[0].metrics, where), 1e-6) << "vehicle " << n << " in batch, " << where;
+    const EnergyAudit audit = energy_audit(orbit.metrics);
+    EXPECT_NEAR(audit.imbalance, 0.0, 1e-7 * audit.electrical) << n;
+  }
+  EXPECT_GE(cranks, 100);
+  EXPECT_GE(direct, 35);
+  EXPECT_GE(at_stop, 70);
+}
+
+TEST(AddedMass, DerivativesAtAStopOfThePitchingAgreeWithDifferences) {
+  const auto parameters = [](auto& design) {
+    return std::array{&design.wing.planform.length, &design.aerodynamics.pitch_coefficient, &design.wing.inertia,
+                      &design.supply.voltage};
+  };
+  const auto least_angle = [](auto& design) { return std::array{&*design.aerodynamics.angle_of_attack_min}; };
+  for (const bool springs : {false, true}) {
+    const std::initializer_list<Metric> metrics = {Metric::frequency, Metric::power_electrical, Metric::power_friction,
+                                                   Metric::lift_mean, Metric::lift_peak};
+    expect_orbit_derivatives(with_stop(springs), parameters, metrics, 1e-6);
+    expect_orbit_derivatives(with_stop(springs), least_angle, metrics, 1e-6);
   }
 }
 

@@ -258,6 +258,8 @@ class CycleGradient {
     if constexpr (System::general) {
       if (before.signs[System::blocked] != after.signs[System::blocked]) which = System::bridge;
       if (before.signs[System::limited] != after.signs[System::limited]) which = System::limit;
+      const bool at_pitch_stop = before.signs[System::pitching] != after.signs[System::pitching];
+      if (at_pitch_stop && jumps_at_pitch_stop(system_.vehicle)) which = System::pitching;
     }
     if (which == switches) return W(0.0);
     const JetState& y = ends_[n - 1];

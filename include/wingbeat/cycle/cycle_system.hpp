@@ -16,6 +16,7 @@
 #include "wingbeat/cycle/energy_balance.hpp"
 #include "wingbeat/cycle/event_crossing.hpp"
 #include "wingbeat/cycle/metrics.hpp"
+#include "wingbeat/cycle/pitch_bound.hpp"
 #include "wingbeat/cycle/pitch_stops.hpp"
 #include "wingbeat/cycle/shaft_rest.hpp"
 #include "wingbeat/cycle/supply_period.hpp"
@@ -188,6 +189,7 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
     }
     if constexpr (general) {
       if (k == bridge || k == limit) return limits_current(vehicle.electronics) && has_current_state(vehicle);
+      if (k == pitching) return jumps_at_pitch_stop(vehicle);
     }
     if constexpr (!turns) return jumps_at_velocity && k <= release;
     return false;
@@ -204,7 +206,7 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
       signs[velocity] = sign_of(y[shaft]);
       if (jumps_at_velocity && value_of(y[shaft]) == 0.0) shaft_rest::hold_or_move(*this, x, y, signs);
     }
-    if constexpr (general) electronics_events::start(*this, x, y, signs);
+    if constexpr (general) electronics_events::start(*this, x, y, signs), pitch_bound::start(*this, x, y, signs);
     if constexpr (on_hinges) {
       if (has_friction(vehicle.pitch.hinge)) signs[turn] = sign_of(y[pitch + 1]);
       if (is_clamped(vehicle.pitch.hinge)) signs[held] = S(-1.0);
@@ -223,7 +225,7 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
   void event_transition(std::size_t k, const S& x, State& y, Signs& signs, Quadrature* totals) const
     requires(features_.on_hinges)
   {
-    if (!jumps(k)) {
+    if (!jumps(k) || (general && k == pitching)) {
       signs[k] = -signs[k];
     } else if (k == stop || k == turn) {
       pitch_stops::event_transition(*this, k, x, y, signs, totals);
@@ -250,7 +252,10 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
       pitch_stops::reset_map<quadratures>(system, x, y, from, to, totals);
       if (pitch_stops::has_impact<System>(from, to)) return;
     }
-    if constexpr (general) electronics_events::reset_map<quadratures>(system, x, y, from, to, totals);
+    if constexpr (general) {
+      electronics_events::reset_map<quadratures>(system, x, y, from, to, totals);
+      pitch_bound::reset_map<quadratures>(system, x, y, from, to, totals);
+    }
     if constexpr (!turns) {
       if (!system.jumps_at_velocity) return;
       const bool stuck = value_of(to[slip]) < 0.0;

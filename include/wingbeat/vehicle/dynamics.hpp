@@ -153,9 +153,9 @@ bool force_has_branches(const Vehicle<S>& v) {
 }
 
 /// A mode with those signs that follow from the instant alone: stroke velocity, pitch velocity, bound of the angle of
-/// attack.
+/// attack. `keeps_bound`: the last is that of `mode` where the accelerations jump with it.
 template <Scalar S>
-Mode<S> with_signs_of_motion(const Vehicle<S>& v, const FullState<S>& instant, Mode<S> mode) {
+Mode<S> with_signs_of_motion(const Vehicle<S>& v, const FullState<S>& instant, Mode<S> mode, bool keeps_bound = false) {
   using std::abs;
   const S stroke_velocity = instant.configuration.kinematics.stroke_slope * instant.omega;
   // A shaft that is about to leave rest moves as it will.
@@ -164,15 +164,17 @@ Mode<S> with_signs_of_motion(const Vehicle<S>& v, const FullState<S>& instant, M
   if (pitches(v)) {
     // Wings that friction of their joint lets go turn as they will.
     if (!has_friction(v.pitch.hinge)) mode.turn = sign_of(instant.pitch_velocity);
-  } else mode.pitching = sign_of(pitch_margin(v.wings, S(abs(stroke_velocity))));
+  } else if (!(keeps_bound && jumps_at_pitch_stop(v))) {
+    mode.pitching = sign_of(pitch_margin(v.wings, S(abs(stroke_velocity))));
+  }
   return mode;
 }
 
-/// with_signs_of_motion() and the sign of the gear torque, in which the rod force keeps its sign; `*motion` is what
-/// acts then.
+/// with_signs_of_motion() and the sign of the gear torque, in which the rod force and a bound of the angle of attack
+/// with which the accelerations jump keep their signs; `*motion` is what acts then.
 template <Scalar S>
 Mode<S> on_force_branch(const Vehicle<S>& v, const FullState<S>& instant, Mode<S> mode, PitchMotion<S>* motion) {
-  mode = with_signs_of_motion(v, instant, mode);
+  mode = with_signs_of_motion(v, instant, mode, true);
   mode.gear = S(1.0);
   *motion = evaluate(v, instant, mode);
   if (value_of(motion->gear_torque) < 0.0 && value_of(mode.slip) > 0.0) {

@@ -106,6 +106,13 @@ struct StrokeLoads {
   S moment;           ///< M_0 [N m]
 };
 
+/// Whether the air's inertia, and the accelerations with it, jump where the pitching of wings under the pitch law meets
+/// its stop (model.md section 10).
+template <template <Scalar> class V, Scalar S>
+bool jumps_at_pitch_stop(const V<S>& v) {
+  return value_of(v.wings.added_inertia) > 0.0 && has_pitch_stop(v.wings) && value_of(v.wings.pitch_coefficient) > 0.0;
+}
+
 /// StrokeLoads of wings under the pitch law, `every_law` as in aero_loads().
 /// \f[
 /// I = N_\mathrm{w} J_\mathrm{w} + J_\mathrm{am}, \qquad M_0 = M_\mathrm{aero}

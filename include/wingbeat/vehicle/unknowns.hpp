@@ -27,9 +27,11 @@ bool is_hinged(const Vehicle<S>& v) {
 }
 
 /// True of what only the solvers for vehicles of any kind know: wings that twist, a piezo, electronics that limit the
-/// current. Batches leave them to the scalar solver.
+/// current, added mass beside a stop of the pitching. Batches leave them to the scalar solver; the last because lanes
+/// know where a stop is met to the square root of the tolerance alone, which is enough where no acceleration jumps.
 template <Scalar S>
 bool is_of_further_kind(const Vehicle<S>& v) {
+  if (jumps_at_pitch_stop(v)) return true;
   return twists(v.pitch.torsion) || is_given(v.piezo) || limits_current(v.electronics);
 }
 
