@@ -1,7 +1,9 @@
 // Designs held at a lift or at a frequency by their voltage, beside the same designs at the voltages they have:
 // processor time on one core, in turns, and the answers beside those of the search of one.
 //
-//   benchmark_hold [COUNT [SECONDS]]    COUNT designs of each box (10,000), measured for SECONDS each (1)
+//   benchmark_hold [COUNT [SECONDS [VEHICLE.toml]]]    COUNT designs of each box (10,000), measured for SECONDS each
+//   (1); of a vehicle on a gearbox 100 wing lengths by 100 gear ratios at hover, as in
+//   data/studies/hover-gear-wing.toml
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -13,6 +15,7 @@
 #include "ensemble_timing.hpp"
 #include "vehicle/kind_boxes.hpp"
 #include "wingbeat/ensemble/ensemble_member.hpp"
+#include "wingbeat/files/design_file.hpp"
 #include "wingbeat/study/ensemble_hold.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -46,7 +49,17 @@ HeldOutcomes solve_held(std::vector<EnsembleMember> members, const std::vector<H
   return held;
 }
 
-void measure(KindBox box, std::size_t count, double seconds, const StartUp& start_up) {
+void measure(const std::string& name, std::vector<EnsembleMember> members, const std::vector<Hold>& lifts,
+             const std::vector<Hold>& frequencies, double seconds, const StartUp& start_up);
+
+EnsembleOptions power_and_lift() {
+  EnsembleOptions options;
+  options.metrics = wanted_sets()[1].metrics;
+  return options;
+}
+
+/// Random designs of a box, held at lifts and frequencies about their own.
+void measure_box(KindBox box, std::size_t count, double seconds, const StartUp& start_up) {
   std::mt19937_64 random(20261126);
   std::uniform_real_distribution<double> log_factor(-0.5, 0.5);
   std::vector<EnsembleMember> members;
@@ -54,10 +67,8 @@ void measure(KindBox box, std::size_t count, double seconds, const StartUp& star
     const Design<double> design = kind_design(box, random);
     members.push_back({resolve(design), reporting_of(design)});
   }
-  EnsembleOptions options;
-  options.metrics = wanted_sets()[1].metrics;
   std::vector<EnsembleOutcome> free(count);
-  solve_ensemble(members, options, start_up, free);
+  solve_ensemble(members, power_and_lift(), start_up, free);
   std::vector<Hold> lifts, frequencies;
   std::size_t kept = 0;
   for (std::size_t n = 0; n < count; ++n) {
@@ -69,8 +80,31 @@ void measure(KindBox box, std::size_t count, double seconds, const StartUp& star
     members[kept++] = members[n];
   }
   members.resize(kept);
-  free.resize(kept);
+  measure(std::string(kind_box_names[std::size_t(box)]), std::move(members), lifts, frequencies, seconds, start_up);
+}
 
+/// The designs of a map over wing length and gear ratio, at hover.
+void measure_map(const char* vehicle, double seconds, const StartUp& start_up) {
+  constexpr int steps = 100;
+  Design<double> design = read_design(vehicle);
+  std::vector<EnsembleMember> members;
+  for (int i = 0; i < steps; ++i) {
+    for (int j = 0; j < steps; ++j) {
+      design.wing.planform.length = 60e-3 + 50e-3 * i / (steps - 1);
+      design.motor.gear_ratio = 6.0 + 14.0 * j / (steps - 1);
+      members.push_back({resolve(design), reporting_of(design)});
+    }
+  }
+  const std::vector<Hold> lifts(members.size(), {Held::lift_to_weight, 1.0});
+  const std::vector<Hold> frequencies(members.size(), {Held::frequency, 20.0});
+  measure("hover map", std::move(members), lifts, frequencies, seconds, start_up);
+}
+
+void measure(const std::string& name, std::vector<EnsembleMember> members, const std::vector<Hold>& lifts,
+             const std::vector<Hold>& frequencies, double seconds, const StartUp& start_up) {
+  const EnsembleOptions options = power_and_lift();
+  const std::size_t kept = members.size();
+  std::vector<EnsembleOutcome> free(kept);
   double unheld = INFINITY, at_lift = INFINITY, at_frequency = INFINITY, spent = 0.0;
   HeldOutcomes held;
   do {
@@ -81,12 +115,15 @@ void measure(KindBox box, std::size_t count, double seconds, const StartUp& star
     spent += a + b + c;
   } while (spent < seconds);
 
-  const std::size_t sample = std::min<std::size_t>(200, kept);
+  const std::size_t sample = std::min<std::size_t>(200, kept), apart = std::max<std::size_t>(1, kept / 200);
   int other = 0;
   double worst = 0.0;
   const double one_by_one = seconds_of([&] {
-    for (std::size_t n = 0; n < sample; ++n) {
-      const FrequencySearch one = find_voltage(members[n].vehicle, lifts[n], {}, start_up);
+    for (std::size_t k = 0; k < sample; ++k) {
+      const std::size_t n = k * apart;
+      SteadyOptions steady;
+      steady.reporting = members[n].reporting;
+      const FrequencySearch one = find_voltage(members[n].vehicle, lifts[n], steady, start_up);
       const bool reached = held.reached[n] == FrequencyOutcome::reached;
       other += reached != (one.outcome == FrequencyOutcome::reached) || held.outcomes[n].status != one.status;
       if (reached) worst = std::max(worst, std::abs(held.outcomes[n].metrics[Metric::voltage] / one.voltage - 1.0));
@@ -97,9 +134,8 @@ void measure(KindBox box, std::size_t count, double seconds, const StartUp& star
     reached += held.reached[n] == FrequencyOutcome::reached;
     scalar += held.outcomes[n].scalar;
   }
-  std::printf("%-12s %9.0f %8.2f %10.2f %11.0f %8.1f %% %8.1f %% | %5d %9.1e\n",
-              std::string(kind_box_names[std::size_t(box)]).c_str(), double(kept) / unheld, at_lift / unheld,
-              at_frequency / unheld, one_by_one / double(sample) / (at_lift / double(kept)),
+  std::printf("%-12s %9.0f %8.2f %10.2f %11.0f %8.1f %% %8.1f %% | %5d %9.1e\n", name.c_str(), double(kept) / unheld,
+              at_lift / unheld, at_frequency / unheld, one_by_one / double(sample) / (at_lift / double(kept)),
               100.0 * double(reached) / double(kept), 100.0 * double(scalar) / double(kept), other, worst);
 }
 
@@ -109,7 +145,7 @@ int main(int argc, char** argv) {
   const std::size_t count = argc > 1 ? std::size_t(std::atoi(argv[1])) : 10000;
   const double seconds = argc > 2 ? std::atof(argv[2]) : 1.0;
   if (count < 1 || !(seconds >= 0.0)) {
-    std::fprintf(stderr, "usage: benchmark_hold [COUNT [SECONDS]]\n");
+    std::fprintf(stderr, "usage: benchmark_hold [COUNT [SECONDS [VEHICLE.toml]]]\n");
     return 2;
   }
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
@@ -118,8 +154,9 @@ int main(int argc, char** argv) {
               count);
   std::printf("             unheld     held at, times it   one by one,                          | of 200 one by one\n");
   std::printf("box          designs/s     lift  frequency  times batch   reached   by scalar  | other   voltage\n");
+  if (argc > 3) measure_map(argv[3], seconds, start_up);
   for (const KindBox box : {KindBox::reference, KindBox::tables, KindBox::pitch_stop, KindBox::pwm, KindBox::coreless,
                             KindBox::four_bar, KindBox::gear_loss}) {
-    measure(box, count, seconds, start_up);
+    measure_box(box, count, seconds, start_up);
   }
 }

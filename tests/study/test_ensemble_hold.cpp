@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <filesystem>
 #include <random>
 
 #include "vehicle/kind_boxes.hpp"
@@ -125,6 +126,59 @@ TEST(EnsembleHold, FindsTheLiftsThatTheSearchOfOneFinds) {
     holds.push_back({Held::lift, std::exp(log_lift(random))});
   }
   expect_lifts_of_one_by_one(members, holds, 40, 8);
+}
+
+// Among them many whose lift has its peak just below or above the weight.
+TEST(EnsembleHold, FindsTheLiftsOfAMapOverWingLengthAndGearRatio) {
+  Design<double> d = read_design(std::filesystem::path(WINGBEAT_DATA) / "designs" / "two-wing-four-bar.toml");
+  std::vector<EnsembleMember> members;
+  std::vector<Hold> holds;
+  for (int i = 0; i < 10; ++i) {
+    for (int j = 0; j < 10; ++j) {
+      d.wing.planform.length = 60e-3 + 4e-3 * i;
+      d.motor.gear_ratio = 6.0 + 1.5 * j;
+      members.push_back({resolve(d), reporting_of(d)});
+      holds.push_back({Held::lift_to_weight, 1.0});
+    }
+  }
+  expect_lifts_of_one_by_one(members, holds, 70, 10);
+}
+
+TEST(EnsembleHold, SettlesLiftsNextToTheLargestByBatches) {
+  std::vector<EnsembleMember> members;
+  std::vector<Hold> holds;
+  std::vector<double> shares;
+  for (const double C : {3e-3, 5e-3, 8e-3}) {
+    Design<double> d = reference_design();
+    d.aerodynamics.pitch_coefficient = C;
+    const Vehicle<double> v = resolve(d);
+    // The largest lift over voltages 0.1 % apart: less than the peak by no more than 1e-5 of it.
+    std::vector<EnsembleMember> voltages;
+    for (double voltage = 1.0; voltage < 30.0; voltage *= 1.001) {
+      voltages.push_back({v, {}});
+      voltages.back().vehicle.voltage = voltage;
+    }
+    std::vector<EnsembleOutcome> lifts(voltages.size());
+    solve_ensemble(voltages, {.tolerance = 1e-8}, start_up_in_time(), lifts);
+    double largest = 0.0;
+    for (const EnsembleOutcome& out : lifts) {
+      const bool inside = out.metrics[Metric::angle_of_attack_min] > 0.0;
+      if (inside) largest = std::max(largest, out.metrics[Metric::lift_mean]);
+    }
+    for (const double share : {0.5, 0.9, 0.99, 0.999, 1.001, 1.01, 1.1, 2.0}) {
+      members.push_back({v, {}});
+      holds.push_back({Held::lift, share * largest});
+      shares.push_back(share);
+    }
+  }
+  const Results results = held(members, holds, {});
+  for (std::size_t n = 0; n < members.size(); ++n) {
+    EXPECT_EQ(results.reached[n] == FrequencyOutcome::reached, shares[n] < 1.0) << n << " " << shares[n];
+    EXPECT_EQ(results.outcomes[n].status, FlappingStatus::flapping) << n;
+    EXPECT_FALSE(has_packs && results.outcomes[n].scalar) << n << " " << shares[n];
+    if (shares[n] > 1.0) continue;
+    EXPECT_NEAR(results.outcomes[n].metrics[Metric::lift_mean] / holds[n].value, 1.0, 1e-6) << n;
+  }
 }
 
 TEST(EnsembleHold, FindsTheLiftThatCarriesTheWeightOfEveryKindOfCrank) {
