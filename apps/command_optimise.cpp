@@ -25,6 +25,7 @@
 #include "wingbeat/report/pareto_report.hpp"
 #include "wingbeat/run/evolution_module.hpp"
 #include "wingbeat/run/parallel.hpp"
+#include "wingbeat/study/drive_train.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat::app {
@@ -150,9 +151,15 @@ int run(const OptimiseArguments& arguments) {
   ProgressLine line("optimise: ");
   const StartUp start_up = start_up_in_time();
 
-  std::vector<MotorTrial> trials = trials_of(file);
-  const bool single = trials.size() == 1 && !trials[0].motor;
-  if (single) {
+  const bool drive_trains = file.drive_train.any();
+  DriveTrainScreen screen;
+  const auto progress = [&line](const std::string& text) { line.show(text); };
+  std::vector<MotorTrial> trials =
+      drive_trains ? choose_drive_train(file, start_up, for_each, progress, screen) : trials_of(file);
+  const bool single = !drive_trains && trials.size() == 1 && !trials[0].motor;
+  if (drive_trains) {
+    // Searched already.
+  } else if (single) {
     // Screening, searches and the neighbourhood of the best are one call each.
     const ForEach shown = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
       std::atomic<std::size_t> finished = 0;
@@ -181,6 +188,8 @@ int run(const OptimiseArguments& arguments) {
         fmt::format("# Found by wingbeat {} optimise {}: {} = {:.6g}\n", version, file_name(arguments),
                     metric_info(file.study.objective).key, best->result.point.metrics[file.study.objective]);
     if (best->motor) head += fmt::format("# Motor: {}\n", one_line(best->motor->model));
+    if (best->gearbox) head += fmt::format("# Gearbox: {}\n", one_line(best->gearbox->model));
+    if (best->battery) head += fmt::format("# Battery: {}\n", one_line(best->battery->model));
     output->write(head + "\n" + edited_design(file.vehicle_file, arguments.output, best->result.design));
     output->commit();
   }
@@ -188,7 +197,10 @@ int run(const OptimiseArguments& arguments) {
     plot_optimum(file, *best, *format, plot->temporary());
     plot->commit();
   }
-  if (single) print(arguments.json ? json_optimum(file, trials[0].result) : text_optimum(file, trials[0].result));
+  if (drive_trains) {
+    print(arguments.json ? json_drive_trains(file, screen, trials) : text_drive_trains(file, screen, trials));
+  } else if (single)
+    print(arguments.json ? json_optimum(file, trials[0].result) : text_optimum(file, trials[0].result));
   else print(arguments.json ? json_motors(file, trials) : text_motors(file, trials));
   return best ? done : does_not_flap;
 }
@@ -199,7 +211,7 @@ void add_optimise(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("optimise", "Find the best design within bounds and constraints");
   const auto a = std::make_shared<OptimiseArguments>();
   add_input(command, a->study, InputKind::study, "study",
-            "Study file (TOML): objective, parameters, constraints, motors", "STUDY");
+            "Study file (TOML): objective, parameters, constraints, lists of parts", "STUDY");
   add_set(command, a->overrides);
   add_file(command, "-o,--output", a->output, ".toml .nc",
            "Write the optimum as a vehicle file, or what was found on the way, and any front, as FILE.nc (NetCDF-4)");

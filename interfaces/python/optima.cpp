@@ -18,19 +18,25 @@ namespace {
 
 /// Of one objective.
 py::dict find_best(OptimiseFile study, int threads) {
-  std::vector<MotorTrial> trials = trials_of(study);
+  const bool drive_trains = study.drive_train.any();
+  DriveTrainScreen screen;
+  std::vector<MotorTrial> trials = drive_trains ? std::vector<MotorTrial>() : trials_of(study);
   watched(py::none(), [&](const Watch&) {
     const ForEach for_each = side_by_side(threads);
-    for (MotorTrial& trial : trials) {
-      if (!trial.refused()) trial.result = optimise(trial_study(study, trial), start_up_in_time(), for_each);
-    }
+    if (drive_trains) trials = choose_drive_train(study, start_up_in_time(), for_each, {}, screen);
+    else
+      for (MotorTrial& trial : trials) {
+        if (!trial.refused()) trial.result = optimise(trial_study(study, trial), start_up_in_time(), for_each);
+      }
     return true;
   });
   const MotorTrial* best = best_trial(study, trials);
-  const bool single = trials.size() == 1 && !trials[0].motor;
-  py::dict result = single
-                        ? reported(detail::optimum_tree(study, trials[0].result), text_optimum(study, trials[0].result))
-                        : reported(detail::motors_tree(study, trials), text_motors(study, trials));
+  const bool single = !drive_trains && trials.size() == 1 && !trials[0].motor;
+  py::dict result =
+      drive_trains
+          ? reported(detail::drive_trains_tree(study, screen, trials), text_drive_trains(study, screen, trials))
+      : single ? reported(detail::optimum_tree(study, trials[0].result), text_optimum(study, trials[0].result))
+               : reported(detail::motors_tree(study, trials), text_motors(study, trials));
   result["design"] = best ? py::cast(best->result.design) : py::none();
   return result;
 }
@@ -103,7 +109,7 @@ py::dict find_own(const std::string& name, const std::vector<std::string>& overr
   forget_files();
   OptimiseFile file = read_optimise_study(find_input(name, InputKind::study), overrides);
   file.study.allow_extrapolation |= allow_extrapolation;
-  if (!file.objectives.empty() || !file.choices.empty() || !file.motors.empty()) {
+  if (!file.objectives.empty() || !file.choices.empty() || !file.motors.empty() || file.drive_train.any()) {
     throw InputError("", 0, 0, "objective",
                      "a function of your own is for one objective, parameters between bounds and one motor");
   }

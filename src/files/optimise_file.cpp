@@ -6,6 +6,7 @@
 #include <cmath>
 #include <set>
 
+#include "files/drive_train_parts.hpp"
 #include "files/motor_catalogue.hpp"
 #include "files/study_sections.hpp"
 #include "files/table_form.hpp"
@@ -23,8 +24,10 @@ using detail::Kind;
 class OptimiseReader : public detail::StudySections {
  public:
   OptimiseReader(const fs::path& file, std::string_view text, std::span<const std::string> overrides)
-      : StudySections(input_name(file), text, overrides, {"objective", "parameter", "constraint", "motors", "search"},
-                      {"condition", "count_after_hover"}),
+      : StudySections(
+            input_name(file), text, overrides,
+            {"objective", "parameter", "constraint", "motors", "search", "drive_train", "gearboxes", "batteries"},
+            {"condition", "count_after_hover"}),
         folder_(file.parent_path()) {}
 
   OptimiseFile read() {
@@ -49,18 +52,21 @@ class OptimiseReader : public detail::StudySections {
     if (!attempt([&] { study.design = read_vehicle(folder_); })) finish();  // the rest is read for this vehicle
     file.vehicle_file = find_vehicle(folder_, vehicle_file());
     attempt([&] { study.options.hold = read_hold(study.design); });
-    const bool motors_read = attempt([&] {
+    const bool parts_read = attempt([&] {
+      read_drive_train(file);
       if (const TomlNode* motors = root_.find("motors")) read_motors(*motors, file);
+      if (file.drive_train.any()) check_drive_train(file);
     });
-    if (!motors_read) finish();
-    // The keys of a catalogue's motors are those of its first usable one.
-    Design<double> base = study.design;
-    for (const MotorCandidate& motor : file.motors) {
-      if (motor.refused.empty()) {
-        base = motor.design;
-        break;
-      }
-    }
+    if (!parts_read) finish();
+    // The keys of listed parts are those of the first usable ones.
+    const auto first_usable = [](const auto& list) {
+      const auto found = std::find_if(list.begin(), list.end(), [](const auto& part) { return part.refused.empty(); });
+      return found == list.end() ? nullptr : &*found;
+    };
+    const MotorCandidate* const motor = first_usable(file.motors);
+    const Design<double> base =
+        with_parts(motor ? motor->design : study.design, first_usable(file.drive_train.gearboxes),
+                   first_usable(file.drive_train.batteries));
     several_ = root_.find("objective") && root_.find("objective")->kind == Kind::array;
     attempt([&] {
       if (several_) read_objectives(file, base);
@@ -218,6 +224,7 @@ class OptimiseReader : public detail::StudySections {
   }
 
   void check_size(const OptimiseFile& file) const {
+    if (file.drive_train.any()) return check_combinations(file);
     const std::size_t max_combinations = 1000;
     std::size_t combinations = 1;
     for (const DiscreteParameter& p : file.choices) combinations *= p.values.size();
@@ -236,6 +243,7 @@ class OptimiseReader : public detail::StudySections {
 
   void read_parameters(OptimiseFile& file, const Design<double>& design) {
     OptimiseStudy& study = file.study;
+    if (file.drive_train.any() && !root_.find("parameter")) return;
     const TomlNode& list = need(root_, "", "parameter", "[[parameter]] sections with key, lower and upper");
     if (list.kind != Kind::array || list.items.empty()) wrong(list, "parameter", "[[parameter]] sections");
     std::set<std::string> used;
@@ -251,6 +259,9 @@ class OptimiseReader : public detail::StudySections {
         refuse(key, "parameter.key", fmt::format("{} is given already", parameter.key));
       }
       no_override_of(parameter.key, "has no effect: the study varies it");
+      if (const char* parts = detail::listed_with(file.drive_train, parameter.key)) {
+        refuse(key, "parameter.key", fmt::format("{} is stated by the list of {}", parameter.key, parts));
+      }
       if (const TomlNode* values = node.find("values")) {
         file.choices.push_back({parameter, values_of(node, *values, parameter)});
         const std::vector<double>& list_of = file.choices.back().values;
@@ -321,11 +332,21 @@ class OptimiseReader : public detail::StudySections {
     const TomlNode& name = need(node, "motors", "catalogue", "the name of a CSV file");
     const fs::path path = folder_ / text_of(name, "motors.catalogue", "the name of a CSV file");
     if (!is_there(path)) refuse(name, "motors.catalogue", fmt::format("there is no file {}", path.string()));
-    const TomlNode& ratio = need(node, "motors", "gear_ratio", "the ratio of the gearbox behind motors that have none");
-    const double gear = quantity(ratio, "motors.gear_ratio", "1");
-    if (!(gear > 0.0)) refuse(ratio, "motors.gear_ratio", "must be > 0");
+    const bool gearboxes = !file.drive_train.gearboxes.empty();
+    if (const TomlNode* ratio = node.find("gear_ratio"); ratio && gearboxes) {
+      refuse(*ratio, "motors.gear_ratio", "has no place beside [gearboxes], which state theirs");
+    }
+    double gear = 1.0;
+    if (!gearboxes) {
+      const TomlNode& ratio =
+          need(node, "motors", "gear_ratio", "the ratio of the gearbox behind motors that have none");
+      gear = quantity(ratio, "motors.gear_ratio", "1");
+      if (!(gear > 0.0)) refuse(ratio, "motors.gear_ratio", "must be > 0");
+    }
     std::optional<double> rest;
-    if (const TomlNode* mass = node.find("mass_without")) {
+    if (const TomlNode* mass = node.find("mass_without"); mass && file.drive_train.any()) {
+      refuse(*mass, "motors.mass_without", "stands in [drive_train] where gearboxes or batteries are lists");
+    } else if (mass) {
       rest = quantity(*mass, "motors.mass_without", "kg");
       if (!(*rest > 0.0)) refuse(*mass, "motors.mass_without", "must be > 0 kg");
       if (file.study.design.masses.motor) {
@@ -337,22 +358,138 @@ class OptimiseReader : public detail::StudySections {
     if (const TomlNode* within = node.find("within_nominal_current")) {
       file.within_nominal_current = boolean(*within, "motors.within_nominal_current");
     }
+    // Where the whole drive train is chosen, the vehicle's mass is one without its motor already.
+    if (file.drive_train.any() && mass_without_) rest = mass_without_;
     std::string encoding;
     const std::string list = detail::decoded(read_text_file(path), path.string(), encoding);
     file.motors = detail::parse_motor_catalogue(
         list, path.string(), gear, rest, file.study.design,
         detail::stated_table(TomlFields(this->file(), "motors", node), "torque_constant"));
-    if (std::none_of(file.motors.begin(), file.motors.end(), [](const auto& m) { return m.refused.empty(); })) {
-      std::string reason = file.motors.empty() ? "holds no motors" : "holds no motor that can be tried";
-      if (!file.motors.empty()) reason += fmt::format(": {}: {}", file.motors[0].model, file.motors[0].refused);
-      refuse(name, "motors.catalogue", reason);
+    for (MotorCandidate& motor : file.motors) {
+      if (gearboxes && motor.refused.empty() && !motor.design.motor.gear_ratio) {
+        motor.refused = "has a gearbox of its own";
+      }
     }
+    require_usable(name, "motors", "motor", file.motors);
+  }
+
+  /// Refuses a list of which nothing can be tried.
+  template <class List>
+  void require_usable(const TomlNode& node, const std::string& section, const char* part, const List& list) const {
+    if (std::any_of(list.begin(), list.end(), [](const auto& p) { return p.refused.empty(); })) return;
+    std::string reason = fmt::format("holds no {}{}", part, list.empty() ? "" : " that can be tried");
+    if (!list.empty()) reason += fmt::format(": {}: {}", list.begin()->model, list.begin()->refused);
+    refuse(node, section + ".catalogue", reason);
+  }
+
+  // ---- [drive_train], [gearboxes], [batteries]
+
+  void read_drive_train(OptimiseFile& file) {
+    const TomlNode* const section = root_.find("drive_train");
+    const TomlNode* const gearboxes = root_.find("gearboxes");
+    const TomlNode* const batteries = root_.find("batteries");
+    Design<double>& design = file.study.design;
+    if (section) {
+      must_be_section(*section, "drive_train");
+      known_keys(*section, "drive_train", {"mass_without", "compatible", "screen", "refine"});
+      if (!gearboxes && !batteries) {
+        refuse(*section, "drive_train", "needs a list of gearboxes or of batteries, in [gearboxes] or [batteries]");
+      }
+      if (const TomlNode* mass = section->find("mass_without")) {
+        mass_without_ = quantity(*mass, "drive_train.mass_without", "kg");
+        if (!(*mass_without_ > 0.0)) refuse(*mass, "drive_train.mass_without", "must be > 0 kg");
+        design.mass = mass_without_;
+      }
+      DriveTrainSearch& search = file.drive_train;
+      if (const TomlNode* screen = section->find("screen")) {
+        search.screen = int(whole_number(*screen, "drive_train.screen", 1, 10000));
+      }
+      if (const TomlNode* refine = section->find("refine")) {
+        search.refine = int(whole_number(*refine, "drive_train.refine", 1, 1000));
+      }
+      if (const TomlNode* compatible = section->find("compatible")) {
+        if (!gearboxes || !root_.find("motors")) {
+          refuse(*compatible, "drive_train.compatible", "needs lists of motors and of gearboxes");
+        }
+        search.compatible = detail::parse_compatibility(text_beside(*compatible, "drive_train.compatible").second);
+        if (search.compatible.empty()) {
+          refuse(*compatible, "drive_train.compatible",
+                 "states nothing; expected lines of a motor and the gearboxes that go with it");
+        }
+      }
+    }
+    const auto read_list = [&](const TomlNode* node, const std::string& name, const char* column, const auto& parse) {
+      if (!node) return;
+      must_be_section(*node, name);
+      known_keys(*node, name, {"catalogue", "columns", "separator", "decimal"});
+      const TomlNode& catalogue = need(*node, name, "catalogue", "the name of a CSV file");
+      const auto [path, list] = text_beside(catalogue, name + ".catalogue");
+      parse(catalogue, path, list, detail::stated_table(TomlFields(this->file(), name, *node), column));
+    };
+    const bool weighed = design.mass.has_value();
+    read_list(gearboxes, "gearboxes", "ratio",
+              [&](const TomlNode& node, const auto& path, const auto& list, auto form) {
+                file.drive_train.gearboxes = detail::parse_gearboxes(list, path, form, weighed);
+                require_usable(node, "gearboxes", "gearbox", file.drive_train.gearboxes);
+              });
+    read_list(batteries, "batteries", "capacity",
+              [&](const TomlNode& node, const auto& path, const auto& list, auto form) {
+                if (!has_battery(design.supply.type)) {
+                  refuse(*batteries, "batteries",
+                         "needs a vehicle with supply.type = \"battery\", whose discharge curve the batteries have");
+                }
+                file.drive_train.batteries = detail::parse_batteries(list, path, form, weighed, design);
+                require_usable(node, "batteries", "battery", file.drive_train.batteries);
+              });
+  }
+
+  /// Name and text of a file that is named beside the study.
+  std::pair<std::string, std::string> text_beside(const TomlNode& name, const std::string& key) const {
+    const fs::path path = folder_ / text_of(name, key, "the name of a CSV file");
+    if (!is_there(path)) refuse(name, key, fmt::format("there is no file {}", path.string()));
+    std::string encoding;
+    return {path.string(), detail::decoded(read_text_file(path), path.string(), encoding)};
+  }
+
+  void check_drive_train(const OptimiseFile& file) const {
+    const DriveTrainSearch& search = file.drive_train;
+    const Design<double>& design = file.study.design;
+    if (!search.gearboxes.empty() && file.motors.empty() && (design.piezo.force_per_volt || !design.motor.gear_ratio)) {
+      refuse(*root_.find("gearboxes"), "gearboxes",
+             "needs a list of motors, or a vehicle with motor.gear_ratio: constants at the output shaft hold those of "
+             "its gearbox");
+    }
+    if (root_.find("objective") && root_.find("objective")->kind == Kind::array) {
+      refuse(*root_.find("objective"), "objective", "lists of gearboxes and of batteries take one objective");
+    }
+    if (!design.mass || mass_without_) return;
+    const ItemMasses<double>& masses = design.masses;
+    const bool drives = !search.gearboxes.empty() || !file.motors.empty();
+    const bool battery = masses.supply || design.supply.battery.specific_energy;
+    if ((!drives || masses.motor) && (search.batteries.empty() || battery)) return;
+    const TomlNode& list = *root_.find(search.gearboxes.empty() ? "batteries" : "gearboxes");
+    refuse(
+        list, "drive_train.mass_without",
+        "missing: the mass of the vehicle without the parts that the lists state; or give motor.mass and supply.mass "
+        "in the vehicle, in whose place the lists' masses then stand");
+  }
+
+  void check_combinations(const OptimiseFile& file) const {
+    constexpr std::size_t max_designs = 4000000;
+    const std::size_t combinations = combinations_of(file).size();
+    const TomlNode& section = *root_.find(file.drive_train.gearboxes.empty() ? "batteries" : "gearboxes");
+    if (combinations == 0) refuse(section, "drive_train.compatible", "no motor goes with any of the gearboxes");
+    const std::size_t each = file.study.parameters.empty() ? 1 : std::size_t(file.drive_train.screen);
+    if (combinations * each <= max_designs) return;
+    refuse(section, "drive_train.screen",
+           fmt::format("{} combinations of {} designs are more than {} designs", combinations, each, max_designs));
   }
 
   fs::path folder_;
-  bool several_ = false;             ///< objectives
-  bool counts_after_hover_ = false;  ///< endurance_s runs to the battery's end
-  bool counts_flight_ = false;       ///< endurance_s is an objective or in a constraint
+  std::optional<double> mass_without_;  ///< the vehicle without the parts of a drive train [kg]
+  bool several_ = false;                ///< objectives
+  bool counts_after_hover_ = false;     ///< endurance_s runs to the battery's end
+  bool counts_flight_ = false;          ///< endurance_s is an objective or in a constraint
 };
 
 }  // namespace

@@ -94,6 +94,8 @@ std::string describe(const NothingFound& n) {
                     screen.violated[c], screen.status[0] - screen.outside, screen.outside > 0 ? "inside" : "that flap",
                     with_unit(screen.closest[c], metric_info(n.constraints[c].metric).unit));
   }
+  if (screen.torque_exceeded[0] > 0) text += "; the rms torque exceeds the gearbox's continuous torque";
+  if (screen.torque_exceeded[1] > 0) text += "; the peak torque exceeds the gearbox's";
   return text;
 }
 
@@ -103,11 +105,16 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   auto out = std::back_inserter(text);
   if (!file.title.empty()) fmt::format_to(out, "{}\n", wrapped(file.title, optimum_width, 0));
   const MetricInfo& objective = metric_info(study.objective);
-  fmt::format_to(out, "{} {}", study.maximise ? "maximise" : "minimise", objective.key);
-  for (std::size_t c = 0; c < study.constraints.size(); ++c) {
-    fmt::format_to(out, "{}{}", c == 0 ? " with " : ", ", name_of(study.constraints[c]));
-  }
-  if (study.options.hold) text += "; " + describe(*study.options.hold);
+  std::string asked = fmt::format("{} {}", study.maximise ? "maximise" : "minimise", objective.key);
+  std::vector<std::string> limits;
+  for (const MetricConstraint& c : study.constraints) limits.push_back(name_of(c));
+  const std::vector<std::string> torques = limit_names(study.gear_torque);
+  limits.insert(limits.end(), torques.begin(), torques.end());
+  for (std::size_t l = 0; l < limits.size(); ++l) asked += (l == 0 ? " with " : ", ") + limits[l];
+  if (study.options.hold) asked += "; " + describe(*study.options.hold);
+  const bool of_parts = !torques.empty() || std::any_of(study.constraints.begin(), study.constraints.end(),
+                                                        [](const MetricConstraint& c) { return !c.part.empty(); });
+  text += of_parts ? wrapped(asked, optimum_width, 2) : asked;
   const std::uint64_t screened = std::accumulate(r.screen.status.begin(), r.screen.status.end(), std::uint64_t(0));
   fmt::format_to(out, "\nscreened {} designs: {} flap, {} of these within every constraint\n", screened,
                  r.screen.status[0], r.screen.feasible);
@@ -148,6 +155,10 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
         Metric::efficiency_system, Metric::current_peak, Metric::stroke_amplitude, Metric::rod_force_peak}) {
     if (!std::isfinite(r.point.metrics[m])) continue;
     fmt::format_to(out, "  {:<36}{}\n", metric_info(m).key, with_unit(r.point.metrics[m], metric_info(m).unit));
+  }
+  if (const GearTorque& torque = r.point.gear_torque; std::isfinite(torque.rms)) {
+    fmt::format_to(out, "  {:<36}{} rms, {} peak\n", "torque behind the gearbox", with_unit(torque.rms, "N m"),
+                   with_unit(torque.peak, "N m"));
   }
   return text;
 }

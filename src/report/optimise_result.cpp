@@ -1,10 +1,12 @@
 // What the --json of optimise has: one optimum, one for each motor or choice, or a front.
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 
 #include "report/described.hpp"
 #include "report/result_schemas.hpp"
 #include "report/result_trees.hpp"
+#include "report/trial_result.hpp"
 #include "report/vehicle_counts.hpp"
 #include "wingbeat/report/optimise_report.hpp"
 #include "wingbeat/report/pareto_report.hpp"
@@ -100,6 +102,13 @@ std::vector<std::string> keys_of(const ParetoStudy& study) {
   return keys;
 }
 
+const Description<GearTorque>& gear_torque_description() {
+  using R = GearTorque;
+  static const Description<R> description =
+      Description<R>().always("rms", "N m", "", &R::rms).always("peak", "N m", "largest magnitude", &R::peak);
+  return description;
+}
+
 const Description<OptimumFound>& optimum_description() {
   using R = OptimumFound;
   const auto result = [](const R& r) { return r.found() ? &r.result : nullptr; };
@@ -135,6 +144,12 @@ const Description<OptimumFound>& optimum_description() {
               schema::or_null(schema::by_name(schema::any_number)))
           .part("metrics", "of the optimum", metrics_description(),
                 [](const R& r) { return r.found() ? &r.result.point.metrics : nullptr; })
+          .sometimes_part("gear_torque", "behind the gearbox of one motor, where that has limits",
+                          gear_torque_description(),
+                          [](const R& r) {
+                            const bool known = r.found() && std::isfinite(r.result.point.gear_torque.rms);
+                            return known ? &r.result.point.gear_torque : nullptr;
+                          })
           .always(
               "active", "", "what holds the optimum",
               [](const R& r) { return r.found() ? active_description().list(r.result.active) : Json(nullptr); },
@@ -179,7 +194,11 @@ const Description<TrialFound>& trial_description() {
   static const Description<R> description = [] {
     Description<R> d;
     add_model(d);
-    return d
+    const auto name_of_part = [](const auto* part) {
+      return part ? std::optional<std::string>(part->model) : std::nullopt;
+    };
+    return d.sometimes("gearbox", "", "of a list", [name_of_part](const R& r) { return name_of_part(r.trial.gearbox); })
+        .sometimes("battery", "", "of a list", [name_of_part](const R& r) { return name_of_part(r.trial.battery); })
         .sometimes(
             "choices", "", "values of the discrete parameters, by key",
             [](const R& r) {
@@ -356,6 +375,8 @@ const Description<FrontFound>& front_description() {
 
 Json optimum_schema() { return optimum_description().schema(); }
 Json motors_schema() { return trials_description().schema(); }
+Json trial_schema() { return trial_description().schema(); }
+Json trial_json(const OptimiseFile& file, const MotorTrial& trial) { return trial_description().json({file, trial}); }
 Json front_schema() { return front_description().schema(); }
 
 }  // namespace described

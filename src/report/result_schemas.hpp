@@ -9,7 +9,8 @@ nlohmann::ordered_json run_schema();
 nlohmann::ordered_json endurance_schema();
 nlohmann::ordered_json tolerance_schema();
 nlohmann::ordered_json optimum_schema();
-nlohmann::ordered_json motors_schema();  ///< an optimum for each motor of a catalogue, or for each choice
+nlohmann::ordered_json motors_schema();        ///< an optimum for each motor of a catalogue, or for each choice
+nlohmann::ordered_json drive_trains_schema();  ///< combinations of motors, gearboxes and batteries
 nlohmann::ordered_json front_schema();
 nlohmann::ordered_json readings_schema();
 nlohmann::ordered_json fit_schema();

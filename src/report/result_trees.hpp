@@ -19,6 +19,7 @@ Json endurance_tree(const EnduranceResult& result);
 Json tolerance_tree(const ToleranceStudy& study, const ToleranceResult& result);
 Json optimum_tree(const OptimiseFile& file, const OptimiseResult& result);
 Json motors_tree(const OptimiseFile& file, std::span<const MotorTrial> trials);
+Json drive_trains_tree(const OptimiseFile& file, const DriveTrainScreen& screen, std::span<const MotorTrial> trials);
 Json front_tree(const OptimiseFile& file, const ParetoStudy& study, const ParetoResult& result);
 Json fit_tree(const BenchFit& fit, const FitResult& result, std::span<const FrictionCandidate> candidates);
 Json identification_tree(const MotorIdentification& motor, const MotorDatasheet& sheet);

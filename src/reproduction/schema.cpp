@@ -20,6 +20,7 @@ Json optimise_schema() {
   return schema::either(
       {schema::with_text(described::optimum_schema(), "one objective"),
        schema::with_text(described::motors_schema(), "one objective, a catalogue of motors or choices"),
+       schema::with_text(described::drive_trains_schema(), "one objective, lists of gearboxes or batteries"),
        schema::with_text(described::front_schema(), "several objectives")});
 }
 

@@ -83,6 +83,7 @@ DesignPoint point_at(const Design<double>& given, const DesignPointOptions& opti
   if (orbit.status != FlappingStatus::flapping) return point;
   point.metrics = orbit.metrics;
   point.voltage = vehicle.voltage;
+  if (options.gear_torque) point.gear_torque = gear_torque(orbit);
   Endurance flight;
   if (options.flight.any() && has_battery(design.supply.type)) {
     const bool begins_held = at_angle || (hold && design.supply.throttle == Throttle::fixed);
@@ -102,6 +103,9 @@ DesignPoint point_at(const Design<double>& given, const DesignPointOptions& opti
   const MetricGradients gradients = metric_gradients(design, options.condition, orbit, parameters, held);
   if (!gradients.regular) return point;
   point.gradients = gradients.by_parameter;
+  if (options.gear_torque) {
+    point.gear_torque_slopes = gear_torque_slopes(design, options.condition, orbit, parameters, held.held);
+  }
   for (std::size_t k = 0; k < parameters.size(); ++k) {
     const auto of_flight = [&](Metric metric, const std::vector<double>& by_parameter) {
       if (!by_parameter.empty()) point.gradients[k][std::size_t(metric)] = by_parameter[k];

@@ -41,6 +41,12 @@ void assess(const OptimiseProblem& problem, OptimiseResult& result) {
     result.screen.violated[c] = only.constraints[Eigen::Index(c)] > feasible_to;
     result.screen.closest[c] = only.point.metrics[study.constraints[c].metric];
   }
+  if (result.screen.outside == 0) {
+    const GearTorque& torque = only.point.gear_torque;
+    const GearTorqueLimits& limits = study.gear_torque;
+    result.screen.torque_exceeded = {limits.continuous && torque.rms > *limits.continuous,
+                                     limits.peak && torque.peak > *limits.peak};
+  }
   if (only.violation() > feasible_to) {
     result.outcome = OptimiseResult::Outcome::infeasible;
     result.failed = 1;
@@ -57,7 +63,22 @@ void assess(const OptimiseProblem& problem, OptimiseResult& result) {
 
 std::string name_of(const MetricConstraint& c) {
   const char* key = metric_info(c.metric).key;
-  return key + std::string(c.at_least ? " >= " : " <= ") + number(c.limit);
+  return (c.part.empty() ? "" : c.part + ": ") + key + std::string(c.at_least ? " >= " : " <= ") + number(c.limit);
+}
+
+std::vector<std::string> limit_names(const GearTorqueLimits& limits) {
+  std::vector<std::string> names;
+  if (limits.continuous)
+    names.push_back("continuous torque of the gearbox: rms <= " + number(*limits.continuous) + " N m");
+  if (limits.peak) names.push_back("peak torque of the gearbox: <= " + number(*limits.peak) + " N m");
+  return names;
+}
+
+std::vector<double> excess_of(const GearTorqueLimits& limits, const GearTorque& torque) {
+  std::vector<double> excess;
+  if (limits.continuous) excess.push_back(torque.rms / *limits.continuous - 1.0);
+  if (limits.peak) excess.push_back(torque.peak / *limits.peak - 1.0);
+  return excess;
 }
 
 std::string bound_of(DomainLimit limit, const Vehicle<double>& vehicle) {

@@ -54,12 +54,21 @@ OptimiseProblem::Evaluation OptimiseProblem::evaluate(const Vector& u, bool grad
   const double sign = study_.maximise ? -1.0 : 1.0;
   e.objective = sign * e.point.metrics[study_.objective];
   e.gradient = row(study_.objective, sign);
-  const Eigen::Index own = Eigen::Index(study_.constraints.size());
-  for (Eigen::Index c = 0; c < own; ++c) {
+  const Eigen::Index metrics = Eigen::Index(study_.constraints.size()), own = own_constraints();
+  for (Eigen::Index c = 0; c < metrics; ++c) {
     const MetricConstraint& limit = study_.constraints[std::size_t(c)];
     const double factor = (limit.at_least ? -1.0 : 1.0) / (limit.limit == 0.0 ? 1.0 : std::abs(limit.limit));
     e.constraints[c] = factor * (e.point.metrics[limit.metric] - limit.limit);
     e.jacobian.row(c) = row(limit.metric, factor).transpose();
+  }
+  const std::vector<double> torque = excess_of(study_.gear_torque, e.point.gear_torque);
+  for (Eigen::Index c = metrics; c < own; ++c) e.constraints[c] = torque[std::size_t(c - metrics)];
+  for (Eigen::Index k = 0; gradients && metrics < own && k < size(); ++k) {
+    const auto& slopes = e.point.gear_torque_slopes;
+    const GearTorque by = std::size_t(k) < slopes.size() ? slopes[std::size_t(k)] : GearTorque{};
+    Eigen::Index c = metrics;
+    if (study_.gear_torque.continuous) e.jacobian(c++, k) = slope(k, u[k]) * by.rms / *study_.gear_torque.continuous;
+    if (study_.gear_torque.peak) e.jacobian(c++, k) = slope(k, u[k]) * by.peak / *study_.gear_torque.peak;
   }
   for (Eigen::Index c = own; c < m; ++c) {
     const std::size_t limit = std::size_t(c - own);

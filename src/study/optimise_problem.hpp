@@ -26,14 +26,18 @@ class OptimiseProblem {
     wanted.set(std::size_t(study.objective));
     for (const MetricConstraint& c : study.constraints) wanted.set(std::size_t(c.metric));
     options_.flight = flight_metrics(wanted, study.allow_extrapolation);
+    options_.gear_torque = study.gear_torque.any();
     // The domain's limits are constraints with slopes, which a search that ends at them would not have.
     if (options_.hold) options_.hold->range = SearchRange::extrapolation;
   }
 
   Eigen::Index size() const { return Eigen::Index(study_.parameters.size()); }
-  /// Those of the study, then the limits of the domain.
-  Eigen::Index constraints() const {
-    return Eigen::Index(study_.constraints.size()) + (study_.allow_extrapolation ? 0 : domain_limit_count);
+  /// Those of the study, then the torques of the gearbox, then the limits of the domain.
+  Eigen::Index constraints() const { return own_constraints() + (study_.allow_extrapolation ? 0 : domain_limit_count); }
+  /// Without the limits of the domain.
+  Eigen::Index own_constraints() const {
+    const GearTorqueLimits& torque = study_.gear_torque;
+    return Eigen::Index(study_.constraints.size()) + torque.continuous.has_value() + torque.peak.has_value();
   }
 
   double value(Eigen::Index k, double u) const {

@@ -33,12 +33,17 @@ std::vector<ActiveLimit> Neighbourhood::active() const {
   std::vector<ActiveLimit> result;
   const double f = std::abs(at_.objective);
   for (std::size_t i = 0; i < constraints_.size(); ++i) {
-    if (std::size_t(constraints_[i]) >= study.constraints.size()) {
-      const DomainLimit limit = DomainLimit(std::size_t(constraints_[i]) - study.constraints.size());
+    if (constraints_[i] >= problem_.own_constraints()) {
+      const DomainLimit limit = DomainLimit(constraints_[i] - problem_.own_constraints());
       const bool from_zero = limit == DomainLimit::angle_of_attack;
       result.push_back({"domain: " + bound_of(limit, resolve(with_any_pitch_coefficient(problem_.design(best_)),
                                                              study.options.condition)),
                         from_zero ? absent : multipliers_[Eigen::Index(i)] / f, true});
+      continue;
+    }
+    if (std::size_t(constraints_[i]) >= study.constraints.size()) {
+      const std::size_t torque = std::size_t(constraints_[i]) - study.constraints.size();
+      result.push_back({limit_names(study.gear_torque)[torque], multipliers_[Eigen::Index(i)] / f, false});
       continue;
     }
     const MetricConstraint& c = study.constraints[std::size_t(constraints_[i])];

@@ -108,6 +108,51 @@ TEST_F(Optimise, ACatalogueOfMotorsExplainsEveryRow) {
   EXPECT_NEAR(json["motors"][0]["result"]["value"].get<double>(), own["value"].get<double>(), 1e-6);
 }
 
+TEST_F(Optimise, ADriveTrainIsChosenFromLists) {
+  std::ofstream(path("gearboxes.csv")) << "model,ratio,mass [g],efficiency,torque_peak [mN m]\n"
+                                          "weak,22,0.5,0.9,5\nstrong,22,1,0.81,200\nslow,60,1,0.81,200\n";
+  std::ofstream(path("batteries.csv")) << "model,cells,capacity [mAh],internal_resistance [mohm],mass [g]\n"
+                                          "small,1,130,230,3.2\nheavy,1,900,50,22\nunknown,1,130,230,\n";
+  const std::string lists =
+      "[drive_train]\nmass_without = \"11.5 g\"\n[gearboxes]\ncatalogue = \"gearboxes.csv\"\n"
+      "[batteries]\ncatalogue = \"batteries.csv\"\n";
+  fs::copy_file(data + "/designs/x-wing-battery.toml", path("vehicle.toml"), fs::copy_options::overwrite_existing);
+  const std::string held = "hold = { lift_to_weight = 1 }\n",
+                    least = "[objective]\nminimise = \"power_electrical_w\"\n";
+  // The vehicle's own motor, whose mass is stated for itself.
+  const std::string file = study(held + "[set]\nmotor.mass = \"0 g\"\n" + lists + least);
+  const Outcome text = run({"optimise", file, "-o", path("best.toml")});
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("6 combinations of 3 gearboxes and 2 batteries\n"));
+  EXPECT_THAT(text.out, HasSubstr("peak torque of the gearbox"));
+  EXPECT_THAT(text.out, HasSubstr("Best: strong, small"));
+  EXPECT_THAT(text.out, HasSubstr("unknown: incomplete, no mass"));
+  EXPECT_THAT(text.out, HasSubstr("its gearbox: no inertia stated: taken as none"));
+  const std::string best = read(path("best.toml"));
+  EXPECT_THAT(best, HasSubstr("# Gearbox: strong\n# Battery: small\n"));
+  const Json json = run({"optimise", file, "--json"}).json();
+  EXPECT_EQ(json["best"], "strong, small");
+  EXPECT_EQ(json["screening"]["combinations"], 6);
+  EXPECT_EQ(json["drive_trains"][0]["gearbox"], "strong");
+  const Json flown = run({"run", path("best.toml"), "--json"}).json();
+  EXPECT_NEAR(flown["power_electrical_w"].get<double>(), json["drive_trains"][0]["result"]["value"].get<double>(),
+              1e-5);
+  EXPECT_NEAR(flown["lift_to_weight"].get<double>(), 1.0, 1e-5);
+  // One thread screens as several do.
+  Json one = run({"optimise", file, "--json", "--threads", "1"}).json();
+  EXPECT_EQ(one["screening"], json["screening"]);
+
+  EXPECT_THAT(complaint(lists + least + "[motors]\ncatalogue = \"" + data + "/motors/motors.csv\"\ngear_ratio = 10\n"),
+              HasSubstr("motors.gear_ratio: has no place beside [gearboxes], which state theirs"));
+  EXPECT_THAT(complaint("[drive_train]\nrefine = 3\n" + least + voltage),
+              HasSubstr("needs a list of gearboxes or of batteries"));
+  const std::string without = "[gearboxes]\ncatalogue = \"gearboxes.csv\"\n" + least;
+  fs::copy_file(springs, path("vehicle.toml"), fs::copy_options::overwrite_existing);
+  EXPECT_THAT(complaint(without), HasSubstr("gearboxes: needs a list of motors, or a vehicle with motor.gear_ratio"));
+  EXPECT_THAT(complaint("[set]\nmotor.gear_ratio = 1\n" + without), HasSubstr("drive_train.mass_without: missing"));
+  EXPECT_THAT(complaint(lists + least), HasSubstr("batteries: needs a vehicle with supply.type = \"battery\""));
+}
+
 TEST_F(Optimise, AMotorKeepsItsNominalCurrent) {
   const auto with =
       [&](const char* nominal, const std::string& keys = "") {

@@ -69,6 +69,27 @@ lower = "2 V"
 upper = "{upper}"
 {constraint}
 """
+DRIVE_TRAINS = """[study]
+vehicle = "x-wing-battery"
+[drive_train]
+mass_without = "7 g"
+refine = 2
+[motors]
+catalogue = "{data}/motors/motors.csv"
+within_nominal_current = false
+[gearboxes]
+catalogue = "{data}/motors/gearboxes.csv"
+[batteries]
+catalogue = "{data}/motors/batteries.csv"
+[objective]
+minimise = "power_electrical_w"
+[[parameter]]
+key = "friction.radius"
+values = [0.0003, 0.0004]
+[[constraint]]
+metric = "lift_to_weight"
+at_least = 1
+"""
 MOTORS = """[motors]
 catalogue = "{catalogue}"
 gear_ratio = 10
@@ -294,6 +315,10 @@ class Schema(unittest.TestCase):
         self.check("optimise", self.file("motors-front.toml", FRONT + catalogue))
         none = self.check("optimise", self.file("no-front.toml", FRONT + BEYOND), statuses=(0, 1, 3))
         self.assertNotIn("front", none)
+        trains = self.check("optimise", self.file("trains.toml", DRIVE_TRAINS.format(data=DATA)))
+        self.assertEqual(trains["screening"]["combinations"], 2 * len(trains["drive_trains"][0]["choices"]) * 960)
+        self.assertIn("gear_torque", trains["drive_trains"][0]["result"])
+        self.assertIn("battery", trains["drive_trains"][0])
         self.everything_is_written("optimise")
 
     def test_endurance(self):

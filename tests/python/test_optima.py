@@ -116,6 +116,20 @@ class OwnFunctions(unittest.TestCase):
 
 
 class Fronts(unittest.TestCase):
+    def test_a_drive_train(self):
+        lists = {name: {"catalogue": str(DATA / "motors" / f"{name}.csv")} for name in ("motors", "gearboxes", "batteries")}
+        lists["motors"]["within_nominal_current"] = False
+        study = {"drive_train": {"mass_without": "7 g", "refine": 1}, **lists,
+                 "objective": {"minimise": "power_electrical_w"},
+                 "constraint": [{"metric": "lift_to_weight", "at_least": 1}]}
+        found = wb.optimise(study, vehicle=wb.read(DATA / "designs" / "x-wing-battery.toml"))
+        self.assertEqual(found["screening"]["combinations"], 960)
+        best = found["drive_trains"][0]
+        self.assertEqual(found["best"], f"{best['model']}, {best['gearbox']}, {best['battery']}")
+        result = found.vehicle.solve()
+        self.assertAlmostEqual(result.power_electrical / best["result"]["value"], 1.0, places=5)
+        self.assertGreaterEqual(result.lift_to_weight, 1.0)
+
     @unittest.skipUnless(PROGRAM, "needs the program's part with pagmo")
     def test_a_front(self):
         study = {

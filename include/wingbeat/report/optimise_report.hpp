@@ -7,6 +7,7 @@
 
 #include "wingbeat/files/optimise_file.hpp"
 #include "wingbeat/report/plot.hpp"
+#include "wingbeat/study/drive_train.hpp"
 
 namespace wingbeat {
 
@@ -27,10 +28,15 @@ std::string describe(const NothingFound& nothing);
 /// Readable report of one result; of a catalogue, the table of motors and the best one's result.
 std::string text_optimum(const OptimiseFile& file, const OptimiseResult& result);
 std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> trials);
+/// What the screening of a drive train's combinations found, the searches from the most promising ones, and the best.
+std::string text_drive_trains(const OptimiseFile& file, const DriveTrainScreen& screen,
+                              std::span<const MotorTrial> trials);
 
 /// One JSON object of a result, or of all motors with the best one first.
 std::string json_optimum(const OptimiseFile& file, const OptimiseResult& result);
 std::string json_motors(const OptimiseFile& file, std::span<const MotorTrial> trials);
+std::string json_drive_trains(const OptimiseFile& file, const DriveTrainScreen& screen,
+                              std::span<const MotorTrial> trials);
 
 /// Where the searches ended, what each parameter's bounds leave, and the walks along the free directions. `trial` has
 /// found an optimum. Throws std::runtime_error where gnuplot is missing or fails.

@@ -10,6 +10,7 @@
 #include "wingbeat/cycle/steady_options.hpp"
 #include "wingbeat/study/flight_metrics.hpp"
 #include "wingbeat/study/frequency_search.hpp"
+#include "wingbeat/study/gear_torque.hpp"
 #include "wingbeat/study/hold.hpp"
 #include "wingbeat/study/sweep_status.hpp"
 #include "wingbeat/vehicle/design.hpp"
@@ -24,6 +25,7 @@ struct DesignPointOptions {
   double tolerance = 1e-6;        ///< of the orbit
   bool peaks = true;              ///< differentiate metrics that are peaks
   FlightMetrics flight = {};      ///< of a vehicle on a battery: Metric::hover, Metric::endurance, too
+  bool gear_torque = false;       ///< find out DesignPoint::gear_torque
 };
 
 /// What a design does, and how its metrics change with parameters; in words: describe() of report/describe.hpp.
@@ -41,6 +43,8 @@ struct DesignPoint {
   std::vector<DomainExcess> domain_slopes;
   /// By each parameter, SI; the supply's voltage and duty included. All absent unless flapping and regular.
   std::vector<std::array<double, metric_count>> gradients;
+  GearTorque gear_torque;                      ///< where it is asked for
+  std::vector<GearTorque> gear_torque_slopes;  ///< by each parameter, SI
 };
 
 /// Solves a design by the scalar solver; a design out of its physical range has the status invalid. Throws

@@ -25,6 +25,7 @@ struct MetricConstraint {
   Metric metric = Metric::lift_to_weight;
   bool at_least = true;
   double limit = 1.0;
+  std::string part = {};  ///< the part whose limit it is: "speed of the gearbox"; empty of a study's own
 };
 
 struct OptimiseStudy {
@@ -34,7 +35,8 @@ struct OptimiseStudy {
   bool maximise = false;
   std::vector<OptimisedParameter> parameters;
   std::vector<MetricConstraint> constraints;
-  bool allow_extrapolation = false;  ///< else the limits of the model's domain are constraints as well
+  GearTorqueLimits gear_torque = {};  ///< of the gearbox, constraints like those
+  bool allow_extrapolation = false;   ///< else the limits of the model's domain are constraints as well
   int starts = 20;  ///< the design as given where it lies within the bounds, the others from the screening
   std::uint64_t seed = 1;
   std::uint64_t screen = 1024;  ///< designs of a scrambled Sobol sequence solved first
@@ -48,6 +50,8 @@ struct ScreenCounts {
   std::array<std::uint64_t, domain_limit_count> beyond{};  ///< of those, by DomainLimit
   std::vector<std::uint64_t> violated;                     ///< by constraint: flapping inside the domain, but beyond it
   std::vector<double> closest;  ///< by constraint: the metric's best value met there [SI]; absent if none
+  /// Of those within every constraint: above the continuous and above the peak torque of the gearbox.
+  std::array<std::uint64_t, 2> torque_exceeded{};
 };
 
 /// A constraint or bound that holds the optimum.
@@ -104,8 +108,12 @@ struct OptimiseResult {
 /// ParameterError for a parameter without a place in the design.
 OptimiseResult optimise(const OptimiseStudy& study, const StartUp& start_up, const ForEach& for_each = {});
 
-/// "lift_to_weight >= 1"
+/// "lift_to_weight >= 1", "speed of the gearbox: crank_speed_max_rad_per_s <= 500"
 std::string name_of(const MetricConstraint& constraint);
+/// The limits of a gearbox that are given, by name: "continuous torque of the gearbox: 0.02 N m".
+std::vector<std::string> limit_names(const GearTorqueLimits& limits);
+/// How far a torque lies beyond each limit that is given, relative to it: positive beyond, absent where unknown.
+std::vector<double> excess_of(const GearTorqueLimits& limits, const GearTorque& torque);
 /// "angle_of_attack >= 0 deg"
 std::string bound_of(DomainLimit limit, const Vehicle<double>& vehicle);
 
