@@ -53,8 +53,10 @@ int run(const IdentifyMotorArguments& arguments) {
   if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{".toml", arguments.force});
   const MotorIdentification motor = identify_motor(sheet, frequency);
   print(arguments.json ? json_identification(motor, sheet) : text_identification(motor, sheet));
-  if (!motor.complete()) {
-    complain(fmt::format("{}: the data sheet does not determine the motor{}", arguments.file,
+  if (!has_motor_section(motor, sheet)) {
+    complain(fmt::format("{}: {}{}", arguments.file,
+                         is_of_heat_alone(sheet) ? "the curve does not determine both thermal resistances"
+                                                 : "the data sheet does not determine the motor",
                          output ? ": no file was written" : ""));
     return bad_input;
   }
@@ -71,7 +73,8 @@ int run(const IdentifyMotorArguments& arguments) {
 }  // namespace
 
 void add_identify_motor(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("identify-motor", "Find a motor's constants from its data sheet");
+  CLI::App* command = program.add_subcommand(
+      "identify-motor", "Find a motor's constants from its data sheet, those of its heat from a heating curve");
   const auto a = std::make_shared<IdentifyMotorArguments>();
   add_input(command, a->file, InputKind::datasheet, "datasheet", "Data sheet (TOML)", "DATASHEET");
   add_file(command, "-o,--output", a->output, ".toml", "Write the [motor] section of a vehicle file", "FILE.toml");

@@ -147,7 +147,7 @@ py::dict identify(const std::string& file, std::optional<double> frequency, bool
   const MotorIdentification found = listening([&] { return identify_motor(sheet, frequency); });
   py::dict result = reported(detail::identification_tree(found, sheet), text_identification(found, sheet));
   result["motor"] =
-      found.complete()
+      has_motor_section(found, sheet)
           ? py::object(py::str(motor_section(found, sheet, "Identified by wingbeat " WINGBEAT_VERSION, stated)))
           : py::none();
   return result;

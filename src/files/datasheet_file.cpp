@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "files/heating_table.hpp"
 #include "files/input_errors.hpp"
 #include "files/toml_fields.hpp"
 #include "wingbeat/core/status.hpp"
@@ -47,10 +48,11 @@ constexpr Field point_fields[] = {{"voltage", "V", nullptr},
 
 }  // namespace
 
-MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_name) {
+MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_name,
+                               const std::filesystem::path& folder) {
   const TomlNode tree = parse_toml_tree(text, file_name);
   const TomlFields root(file_name, "", tree);
-  const std::string_view sections[] = {"datasheet", "deviation", "fallback"};
+  const std::string_view sections[] = {"datasheet", "deviation", "fallback", "heating"};
   InputErrors errors;
   errors.attempt([&] { root.known_keys(sections); });
   const auto sheet = root.table("datasheet");
@@ -61,6 +63,7 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
   errors.attempt([&] { sheet->known_keys(known); });
 
   MotorDatasheet s;
+  std::optional<HeatingCurve> heating_curve;
   s.name = sheet->text("name").value_or("");
   sheet->text("source");
   sheet->text("note");
@@ -106,8 +109,25 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
     if (fallback->has("viscous_damping"))
       s.assume_typical_damping = !fallback->choice("viscous_damping", typical).empty();
   }
+  if (const auto heating = root.table("heating")) {
+    HeatingCurve curve = detail::read_heating(*heating, folder);
+    curve.cold_resistance = s.resistance;
+    try {
+      validate(curve);
+    } catch (const ParameterError& error) {
+      heating->refuse(heating->at(error.key()), error.key(), error.reason());
+    }
+    heating_curve = std::move(curve);
+  }
   try {
-    identify_motor(s);
+    // The heating curve, whose fit takes long, has been checked.
+    MotorDatasheet without_heat = s;
+    if (heating_curve) {
+      without_heat.winding_temperature_max.reset();
+      without_heat.thermal_time_constant_winding.reset();
+      without_heat.thermal_time_constant_case.reset();
+    }
+    identify_motor(without_heat);
   } catch (const ParameterError& error) {
     const bool point = error.key() == "point";
     const bool of_root = error.key().starts_with("fallback");
@@ -116,11 +136,12 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
     throw InputError(file_name, place.line, place.column, of_root ? error.key() : sheet->name_of(error.key()),
                      error.reason());
   }
+  s.heating = std::move(heating_curve);
   return s;
 }
 
 MotorDatasheet read_datasheet(const std::filesystem::path& file) {
-  return parse_datasheet(read_text_file(file), input_name(file));
+  return parse_datasheet(read_text_file(file), input_name(file), file.parent_path());
 }
 
 }  // namespace wingbeat

@@ -31,17 +31,8 @@ constexpr Constant constants[] = {
     {"viscous_damping", "viscous damping", "N m s/rad", &MotorIdentification::viscous_damping, 2},
     {"friction_torque", "friction torque", "N m", &MotorIdentification::friction_torque, 1}};
 
-/// What [motor] has from the sheet as it stands there.
-struct SheetValue {
-  std::string_view key, unit;
-  std::optional<double> MotorDatasheet::* value;
-};
-constexpr SheetValue thermal_values[] = {
-    {"thermal_resistance_winding", "K/W", &MotorDatasheet::thermal_resistance_winding},
-    {"thermal_resistance_case", "K/W", &MotorDatasheet::thermal_resistance_case},
-    {"winding_temperature_max", "K", &MotorDatasheet::winding_temperature_max},
-    {"thermal_time_constant_winding", "s", &MotorDatasheet::thermal_time_constant_winding},
-    {"thermal_time_constant_case", "s", &MotorDatasheet::thermal_time_constant_case}};
+constexpr HeatConstant heat_constants[] = {HeatConstant::resistance_winding, HeatConstant::resistance_case,
+                                           HeatConstant::time_constant_winding, HeatConstant::time_constant_case};
 
 std::string percent(double x) { return fmt::format("{:.{}f} %", 100.0 * x, std::abs(x) < 0.1 ? 1 : 0); }
 
@@ -51,10 +42,61 @@ std::string sentence(const Contradiction& c) {
 
 std::string scientific(double x, std::string_view unit) { return fmt::format("{:.4g} {}", x, unit); }
 
+/// The lines of [motor] about heat. A vehicle takes both resistances or neither, and time constants beside them.
+std::string thermal_lines(const MotorIdentification& motor, const MotorDatasheet& sheet, bool rounded = false) {
+  const auto value = [&](HeatConstant which) { return thermal_constant(sheet, motor, which); };
+  if (!value(HeatConstant::resistance_winding) || !value(HeatConstant::resistance_case)) return "";
+  std::string text;
+  for (const HeatConstant which : heat_constants) {
+    const auto x = value(which);
+    if (!x) continue;
+    text += fmt::format("{} = \"{} {}\"\n", key_of(which), rounded ? fmt::format("{:.5g}", *x) : fmt::format("{}", *x),
+                        unit_of(which));
+  }
+  if (sheet.winding_temperature_max) {
+    text += fmt::format("winding_temperature_max = \"{} K\"\n", *sheet.winding_temperature_max);
+  }
+  return text;
+}
+
+/// What a heating curve shows.
+std::string text_heat(const HeatIdentification& heat, const MotorDatasheet& sheet, const MotorIdentification& motor) {
+  std::string text = fmt::format("\nHeat, from {}{:>{}}\n", one_line(sheet.heating->source, 40), "95 % interval",
+                                 std::max(14, 65 - int(std::min<std::size_t>(sheet.heating->source.size(), 40))));
+  const auto row = [&](std::string_view name, const std::optional<HeatValue>& x, std::string_view unit) {
+    if (!x) return void(text += fmt::format("  {:<38}{:>18}\n", name, "not determined"));
+    text += fmt::format("  {:<38}{:>18}    {:.4g} to {:.4g}\n", name, scientific(x->value, unit), x->low, x->high);
+  };
+  for (const HeatConstant which : heat_constants) {
+    row(detail::spaced(std::string(key_of(which))), heat[which], unit_of(which));
+  }
+  if (heat.resistance_sum) row("both thermal resistances together", heat.resistance_sum, "K/W");
+  if (heat.case_heat_capacity) row("heat capacity of the case", heat.case_heat_capacity, "J/K");
+  if (heat.start_resistance) row("winding at the start", heat.start_resistance, "ohm");
+  for (const HeatColumn& c : heat.columns) {
+    text += fmt::format("  {:<38}{:>18}    scatter {:.2g} {}\n", detail::spaced(c.name),
+                        fmt::format("{} values", c.count), c.scatter, c.unit);
+  }
+  for (const std::string& missing : heat.missing) text += "  " + wrapped(missing, 88, 4) + "\n";
+  for (const std::string& remark : heat.remarks) text += "  " + wrapped(remark, 88, 4) + "\n";
+  const std::string lines = thermal_lines(motor, sheet, true);
+  if (!lines.empty()) text += "\n[motor] of a vehicle file\n" + lines;
+  return text;
+}
+
 }  // namespace
+
+bool has_motor_section(const MotorIdentification& motor, const MotorDatasheet& sheet) {
+  return is_of_heat_alone(sheet) ? !thermal_lines(motor, sheet).empty() : motor.complete();
+}
 
 std::string motor_section(const MotorIdentification& motor, const MotorDatasheet& sheet, const std::string& made_by,
                           Shaft shaft) {
+  if (is_of_heat_alone(sheet)) {
+    return fmt::format("# {}\n# {}: heat alone.\n\n[motor]\n{}",
+                       sheet.name.empty() ? "Motor of a heating curve" : one_line(sheet.name, 100), made_by,
+                       thermal_lines(motor, sheet));
+  }
   motor.motor();
   std::string text = fmt::format("# {}\n# {}; constants at the {} shaft.\n",
                                  sheet.name.empty() ? "Motor of a data sheet" : one_line(sheet.name, 100), made_by,
@@ -68,14 +110,12 @@ std::string motor_section(const MotorIdentification& motor, const MotorDatasheet
     text += fmt::format("{} = \"{} {}\"\n", c.key, *(motor.*c.value).value / std::pow(n, c.power), c.unit);
   }
   if (sheet.gear_efficiency) text += fmt::format("gear_efficiency = {}\n", *sheet.gear_efficiency);
-  for (const SheetValue& v : thermal_values) {
-    if (sheet.*v.value) text += fmt::format("{} = \"{} {}\"\n", v.key, *(sheet.*v.value), v.unit);
-  }
-  return text;
+  return text + thermal_lines(motor, sheet);
 }
 
 std::string text_identification(const MotorIdentification& motor, const MotorDatasheet& sheet) {
   std::string text = sheet.name.empty() ? "" : one_line(sheet.name, 88) + "\n";
+  if (motor.heat && is_of_heat_alone(sheet)) return text + text_heat(*motor.heat, sheet, motor);
   text += "\nConstants at the output shaft\n";
   for (const Constant& c : constants) {
     const IdentifiedConstant& x = motor.*c.value;
@@ -104,6 +144,7 @@ std::string text_identification(const MotorIdentification& motor, const MotorDat
   }
   if (!motor.remarks.empty()) text += "\nRemarks\n";
   for (const std::string& remark : motor.remarks) text += "  " + wrapped(remark, 88, 4) + "\n";
+  if (motor.heat) text += text_heat(*motor.heat, sheet, motor);
   if (!motor.missing.empty()) text += "\nNot determined\n";
   for (const std::string& missing : motor.missing) text += "  " + wrapped(missing, 88, 4) + "\n";
   return text;
@@ -160,6 +201,56 @@ const Description<Contradiction>& contradiction_description() {
   return description;
 }
 
+const Description<HeatValue>& heat_value_description() {
+  using R = HeatValue;
+  static const Description<R> description =
+      Description<R>()
+          .always("value", "", "", &R::value, schema::any_number)
+          .always("low", "", "of the 95 % interval", &R::low, schema::any_number)
+          .always("high", "", "of the 95 % interval", &R::high, schema::any_number);
+  return description;
+}
+
+const Description<HeatColumn>& heat_column_description() {
+  using R = HeatColumn;
+  static const Description<R> description =
+      Description<R>()
+          .always("name", "", "", &R::name)
+          .always("unit", "", "", &R::unit)
+          .always("values", "", "fitted", &R::count)
+          .always("scatter", "", "standard deviation about the fitted curve, in that unit", &R::scatter,
+                  schema::any_number);
+  return description;
+}
+
+const Description<HeatIdentification>& heat_description() {
+  using R = HeatIdentification;
+  static const Description<R> description = [] {
+    Description<R> d;
+    const auto value = [&](std::string_view key, std::string_view unit, std::string_view meaning, const auto& get) {
+      d.part(std::string(key), fmt::format("{}{}[{}]", meaning, meaning.empty() ? "" : " ", unit),
+             heat_value_description(), [get](const R& r) {
+               const std::optional<HeatValue>& x = get(r);
+               return x ? &*x : nullptr;
+             });
+    };
+    for (const HeatConstant which : heat_constants) {
+      value(key_of(which), unit_of(which), "null where the curve does not determine it",
+            [which](const R& r) -> const std::optional<HeatValue>& { return r[which]; });
+    }
+    value("resistance_sum", "K/W", "of both thermal resistances, where one is not determined",
+          [](const R& r) -> const std::optional<HeatValue>& { return r.resistance_sum; });
+    value("case_heat_capacity", "J/K", "time constant over thermal resistance, where one is not determined",
+          [](const R& r) -> const std::optional<HeatValue>& { return r.case_heat_capacity; });
+    value("start_resistance", "ohm", "of the winding at the start, where the curve shows it",
+          [](const R& r) -> const std::optional<HeatValue>& { return r.start_resistance; });
+    return d.parts("columns", "of the curve", heat_column_description(), [](const R& r) { return r.columns; })
+        .always("missing", "", "constants that the curve does not determine, and why", &R::missing)
+        .always("remarks", "", "", &R::remarks);
+  }();
+  return description;
+}
+
 const Description<IdentificationFound>& identification_description() {
   using R = IdentificationFound;
   static const Description<R> description =
@@ -184,6 +275,8 @@ const Description<IdentificationFound>& identification_description() {
                  [](const R& r) { return r.motor.checks; })
           .parts("contradictions", "ways to one constant that do not agree, largest first", contradiction_description(),
                  [](const R& r) { return r.motor.contradictions; })
+          .sometimes_part("heat", "of the heating curve", heat_description(),
+                          [](const R& r) { return r.motor.heat ? &*r.motor.heat : nullptr; })
           .always("remarks", "", "assumptions made", [](const R& r) { return r.motor.remarks; })
           .always("missing", "", "constants that are not determined, and what would determine them",
                   [](const R& r) { return r.motor.missing; });

@@ -44,7 +44,7 @@ void validate(const MotorDatasheet& s) {
     throw ParameterError(s.thermal_resistance_winding ? "thermal_resistance_case" : "thermal_resistance_winding",
                          "missing: give both thermal resistances, of winding and case, or neither");
   }
-  if (!s.thermal_resistance_winding &&
+  if (!s.thermal_resistance_winding && !s.heating &&
       (s.winding_temperature_max || s.thermal_time_constant_winding || s.thermal_time_constant_case)) {
     throw ParameterError("thermal_resistance_winding", "missing: nothing can be said of the motor's heat without it");
   }

@@ -183,7 +183,45 @@ void remark_on_misfits(const std::vector<Datum>& data, MotorIdentification& resu
   }
 }
 
+/// What the sheet states beside what the curve shows.
+void compare_heat(const MotorDatasheet& s, HeatIdentification& heat) {
+  const std::pair<HeatConstant, std::optional<double>> stated[] = {
+      {HeatConstant::resistance_winding, s.thermal_resistance_winding},
+      {HeatConstant::resistance_case, s.thermal_resistance_case},
+      {HeatConstant::time_constant_winding, s.thermal_time_constant_winding},
+      {HeatConstant::time_constant_case, s.thermal_time_constant_case}};
+  for (const auto& [which, value] : stated) {
+    const std::optional<HeatValue>& found = heat[which];
+    if (!value || !found || (*value >= found->low && *value <= found->high)) continue;
+    heat.remarks.push_back(format("the sheet states a %s of %.4g %s, outside the interval of the curve, which counts",
+                                  detail::spaced(std::string(key_of(which))).c_str(), *value,
+                                  std::string(unit_of(which)).c_str()));
+  }
+}
+
 }  // namespace
+
+bool is_of_heat_alone(const MotorDatasheet& s) {
+  if (!s.heating || !s.points.empty()) return false;
+  for (const auto& stated :
+       {s.no_load_speed, s.no_load_current, s.stall_torque, s.stall_current, s.torque_constant, s.speed_constant,
+        s.friction_torque, s.viscous_damping, s.inductance, s.rotor_inertia, s.mechanical_time_constant}) {
+    if (stated) return false;
+  }
+  return true;
+}
+
+std::optional<double> thermal_constant(const MotorDatasheet& sheet, const MotorIdentification& motor,
+                                       HeatConstant which) {
+  if (motor.heat && (*motor.heat)[which]) return (*motor.heat)[which]->value;
+  switch (which) {
+    case HeatConstant::resistance_winding: return sheet.thermal_resistance_winding;
+    case HeatConstant::resistance_case: return sheet.thermal_resistance_case;
+    case HeatConstant::time_constant_winding: return sheet.thermal_time_constant_winding;
+    case HeatConstant::time_constant_case: return sheet.thermal_time_constant_case;
+  }
+  return std::nullopt;
+}
 
 Motor<double> MotorIdentification::motor() const {
   if (!complete()) throw std::logic_error("the motor is not completely identified");
@@ -194,6 +232,10 @@ Motor<double> MotorIdentification::motor() const {
 MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double> frequency) {
   detail::validate(s);
   MotorIdentification result;
+  if (s.heating) {
+    result.heat = identify_heat(*s.heating);
+    compare_heat(s, *result.heat);
+  }
   const std::vector<Datum> data = detail::data_of(s);
   const MotorFit fit(s, data);
   result.birge_ratio = fit.birge_ratio;

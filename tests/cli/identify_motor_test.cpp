@@ -66,6 +66,70 @@ TEST_F(IdentifyMotor, HandsOnWhatTheSheetSaysOfHeat) {
   EXPECT_THAT(run({"identify-motor", path("half.toml")}).err, HasSubstr("give both thermal resistances"));
 }
 
+TEST_F(IdentifyMotor, ReadsAHeatingCurve) {
+  const std::string heated = data + "/motors/0816K003SR-heating.toml";
+  const Outcome o = run({"identify-motor", heated, "-o", path("motor.toml")});
+  EXPECT_EQ(o.status, 0) << o.err;
+  EXPECT_THAT(o.out, HasSubstr("Heat, from heating-0816.csv"));
+  const Json heat = run({"identify-motor", heated, "--json"}).json()["heat"];
+  const std::pair<const char*, double> truths[] = {{"thermal_resistance_winding", 20.0},
+                                                   {"thermal_resistance_case", 48.0},
+                                                   {"thermal_time_constant_winding", 5.0},
+                                                   {"thermal_time_constant_case", 200.0}};
+  for (const auto& [key, truth] : truths) {
+    EXPECT_LT(heat[key]["low"].get<double>(), truth) << key;
+    EXPECT_GT(heat[key]["high"].get<double>(), truth) << key;
+    EXPECT_THAT(read(path("motor.toml")), HasSubstr("\n" + std::string(key) + " = \""));
+  }
+  // A vehicle takes what is written.
+  std::string vehicle = read(plain);
+  const auto from = vehicle.find("[motor]"), to = vehicle.find("[transmission]");
+  vehicle.replace(from, to - from, read(path("motor.toml")) + "\n");
+  std::ofstream(path("vehicle.toml")) << vehicle;
+  EXPECT_EQ(run({"run", path("vehicle.toml"), "--condition", "wingless"}).status, 0);
+}
+
+TEST_F(IdentifyMotor, OfAHeatingCurveAlone) {
+  const std::string curve = read(data + "/bench/heating-0816.csv");
+  std::ofstream(path("all.csv")) << curve;
+  const auto sheet = [&](const std::string& file, const std::string& more = "voltage = \"2 V\"\n") {
+    std::ofstream(path("heat.toml")) << "[datasheet]\nresistance = \"5.4 ohm\"\n[heating]\nfile = \"" << file << "\"\n"
+                                     << "ambient_temperature = \"22 degC\"\n"
+                                     << more;
+    return path("heat.toml");
+  };
+  const Outcome all = run({"identify-motor", sheet("all.csv"), "-o", path("motor.toml")});
+  EXPECT_EQ(all.status, 0) << all.err;
+  EXPECT_THAT(all.out, testing::Not(HasSubstr("Constants at the output shaft")));
+  EXPECT_THAT(read(path("motor.toml")), HasSubstr(": heat alone.\n\n[motor]\nthermal_resistance_winding = \""));
+
+  // The first half minute says too little of the case.
+  std::ofstream(path("short.csv")) << curve.substr(0, curve.find("\n30,"));
+  const Outcome little = run({"identify-motor", sheet("short.csv"), "-o", path("none.toml")});
+  EXPECT_EQ(little.status, 2);
+  EXPECT_THAT(little.out, HasSubstr("too short for the case"));
+  EXPECT_THAT(little.out, HasSubstr("heat capacity of the case"));
+  EXPECT_THAT(little.err, HasSubstr("the curve does not determine both thermal resistances: no file was written"));
+  EXPECT_FALSE(fs::exists(path("none.toml")));
+
+  const auto said = [&](const std::string& file, const std::string& more = "voltage = \"2 V\"\n") {
+    const Outcome o = run({"identify-motor", sheet(file, more)});
+    EXPECT_EQ(o.status, 2);
+    return o.err;
+  };
+  EXPECT_THAT(said("nothing.csv"), HasSubstr("heating.file: there is no file"));
+  std::ofstream bare(path("bare.csv"));
+  bare << "time [s],current [A]\n";
+  for (int n = 1; n < 20; ++n) bare << n << ",0.3\n";
+  bare.close();
+  EXPECT_THAT(said("bare.csv", ""), HasSubstr("heating.file: shows no temperature"));
+  EXPECT_THAT(said("all.csv", "current = \"1 A\"\n"), HasSubstr("is a column of all.csv as well"));
+  std::ofstream(path("back.csv")) << "time [s],current [A]\n1,0.3\n1,0.2\n";
+  EXPECT_THAT(said("back.csv"), HasSubstr("back.csv:3:1: time: must grow from row to row: 1 s after 1 s"));
+  std::ofstream(path("word.csv")) << "time [s],current [A]\n1,much\n";
+  EXPECT_THAT(said("word.csv"), HasSubstr("word.csv:2:3: current [A]: expected a number, got \"much\""));
+}
+
 TEST_F(IdentifyMotor, JsonHoldsConstantsAndContradictions) {
   const Json json = run({"identify-motor", faulhaber, "--json"}).json();
   EXPECT_EQ(json["complete"], true);

@@ -5,6 +5,7 @@ import copy
 import importlib.machinery
 import importlib.util
 import json
+import math
 import os
 import pathlib
 import re
@@ -273,8 +274,23 @@ class Schema(unittest.TestCase):
         self.everything_is_written("sweep")
 
     def test_motors(self):
-        for sheet in ("0816K003SR", "pololu-1098"):
+        for sheet in ("0816K003SR", "pololu-1098", "0816K003SR-heating"):
             self.check("identify-motor", DATA / f"motors/{sheet}.toml")
+        # A curve of the first seconds: what is left of the case.
+        rows = (DATA / "bench/heating-0816.csv").read_text().splitlines()[:64]
+        self.file("short.csv", "\n".join(rows) + "\n")
+        self.file("short.toml", '[datasheet]\nresistance = "5.4 ohm"\n[heating]\nfile = "short.csv"\n'
+                                'voltage = "2 V"\nambient_temperature = "22 degC"\n')
+        short = self.check("identify-motor", self.folder / "short.toml", statuses=(2,))
+        self.assertIsNone(short["heat"]["thermal_resistance_case"])
+        self.assertGreater(short["heat"]["case_heat_capacity"]["value"], 0)
+        # A winding that warms as one lump: the sum of both resistances.
+        warming = [f"{5 * n},{25 + 40 * (1 - math.exp(-n / 20)) + 0.3 * (7 * n % 5 - 2):.2f}" for n in range(1, 121)]
+        sum_of = ["time [s],winding_temperature [degC]"] + warming
+        self.file("sum.csv", "\n".join(sum_of) + "\n")
+        self.file("sum.toml", '[datasheet]\nresistance = "5.4 ohm"\n[heating]\nfile = "sum.csv"\ncurrent = "0.3 A"\n')
+        summed = self.check("identify-motor", self.folder / "sum.toml", statuses=(2,))
+        self.assertGreater(summed["heat"]["resistance_sum"]["value"], 0)
         self.everything_is_written("identify-motor")
 
     def test_fit(self):

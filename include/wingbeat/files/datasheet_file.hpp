@@ -9,8 +9,9 @@
 
 namespace wingbeat {
 
-/// Throws InputError.
+/// A heating curve that the sheet names is sought beside it, or in `folder`. Throws InputError.
 MotorDatasheet read_datasheet(const std::filesystem::path& file);
-MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_name);
+MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_name,
+                               const std::filesystem::path& folder = {});
 
 }  // namespace wingbeat

@@ -7,9 +7,13 @@
 
 namespace wingbeat {
 
+/// Whether there is a section to write: the motor is complete, or the sheet is of heat alone and the curve determines
+/// both thermal resistances.
+bool has_motor_section(const MotorIdentification& motor, const MotorDatasheet& sheet);
+
 /// The [motor] section of a vehicle file with what it rests on as comments: constants at the output shaft, or
 /// gear_ratio and those at the motor shaft, so that the ratio may be changed. Numbers read back to the same double. The
-/// identification must be complete.
+/// identification must have a section.
 std::string motor_section(const MotorIdentification& motor, const MotorDatasheet& sheet, const std::string& made_by,
                           Shaft shaft = Shaft::output);
 

@@ -8,6 +8,7 @@
 
 #include "wingbeat/core/names.hpp"
 #include "wingbeat/parts/motor.hpp"
+#include "wingbeat/study/motor_heating.hpp"
 
 namespace wingbeat {
 
@@ -50,6 +51,7 @@ struct MotorDatasheet {
   std::optional<double> thermal_resistance_winding, thermal_resistance_case;  ///< R_th1, R_th2 [K/W], both or neither
   std::optional<double> winding_temperature_max;                              ///< [K]
   std::optional<double> thermal_time_constant_winding, thermal_time_constant_case;  ///< tau_w, tau_c [s]
+  std::optional<HeatingCurve> heating;  ///< from which those not above are found, or all of them
   /// Relative standard deviation of a value by its name ("stall_current"), and of all others.
   std::map<std::string, double> deviations;
   double deviation = 0.05;
@@ -100,12 +102,20 @@ struct MotorIdentification {
   /// How much wider the sheet's values scatter about the identified motor than their deviations say, at least 1;
   /// standard errors are multiplied by it (Birge 1932, Phys. Rev. 40, 207).
   double birge_ratio = 1.0;
-  std::vector<std::string> remarks;  ///< assumptions made, in words
-  std::vector<std::string> missing;  ///< constants that could not be determined, and what would do it
+  std::vector<std::string> remarks;        ///< assumptions made, in words
+  std::vector<std::string> missing;        ///< constants that could not be determined, and what would do it
+  std::optional<HeatIdentification> heat;  ///< of the heating curve
   bool complete() const { return missing.empty(); }
   /// Throws std::logic_error unless complete().
   Motor<double> motor() const;
 };
+
+/// True of a sheet with a heating curve that states nothing of the motor but its resistance.
+bool is_of_heat_alone(const MotorDatasheet& sheet);
+
+/// A thermal constant for [motor]: from the heating curve where it determines it, else the sheet's.
+std::optional<double> thermal_constant(const MotorDatasheet& sheet, const MotorIdentification& motor,
+                                       HeatConstant which);
 
 /// Identifies the motor. `frequency` [Hz], where the user has one in mind, serves the remark about the inductance.
 /// Throws ParameterError for values out of range.
