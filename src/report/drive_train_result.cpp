@@ -95,10 +95,10 @@ const Description<DriveTrainsFound>& drive_trains_description() {
               "drive_trains", "", "the combinations that were searched, the most promising of the screening first",
               [](const R& r) {
                 Json list = Json::array();
-                for (const MotorTrial& t : r.trials) list.push_back(trial_json(r.file, t));
+                for (const MotorTrial& t : r.trials) list.push_back(drive_train_json(r.file, t));
                 return list;
               },
-              schema::listed(trial_schema()));
+              schema::listed(drive_train_schema()));
   return description;
 }
 

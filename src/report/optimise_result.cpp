@@ -109,10 +109,11 @@ const Description<GearTorque>& gear_torque_description() {
   return description;
 }
 
-const Description<OptimumFound>& optimum_description() {
+/// `drive_train`: of parts from lists, with the torque behind their gearbox.
+Description<OptimumFound> made_optimum_description(bool drive_train) {
   using R = OptimumFound;
   const auto result = [](const R& r) { return r.found() ? &r.result : nullptr; };
-  static const Description<R> description =
+  Description<R> description =
       Description<R>()
           .always(
               "outcome", "", "", [](const R& r) { return Json(outcome_name(r.result.outcome)); }, outcomes())
@@ -144,12 +145,6 @@ const Description<OptimumFound>& optimum_description() {
               schema::or_null(schema::by_name(schema::any_number)))
           .part("metrics", "of the optimum", metrics_description(),
                 [](const R& r) { return r.found() ? &r.result.point.metrics : nullptr; })
-          .sometimes_part("gear_torque", "behind the gearbox of one motor, where that has limits",
-                          gear_torque_description(),
-                          [](const R& r) {
-                            const bool known = r.found() && std::isfinite(r.result.point.gear_torque.rms);
-                            return known ? &r.result.point.gear_torque : nullptr;
-                          })
           .always(
               "active", "", "what holds the optimum",
               [](const R& r) { return r.found() ? active_description().list(r.result.active) : Json(nullptr); },
@@ -161,6 +156,16 @@ const Description<OptimumFound>& optimum_description() {
           .part("starts", "starts of local searches by where they ended", starts_description(), result)
           .always("evaluations", "", "cycles computed with gradients",
                   of_the_optimum([](const R& r) { return r.result.evaluations; }));
+  if (!drive_train) return description;
+  return description.sometimes_part("gear_torque", "behind the gearbox of one motor, where that has limits",
+                                    gear_torque_description(), [](const R& r) {
+                                      const GearTorque& torque = r.result.point.gear_torque;
+                                      return r.found() && std::isfinite(torque.rms) ? &torque : nullptr;
+                                    });
+}
+
+const Description<OptimumFound>& optimum_description() {
+  static const Description<OptimumFound> description = made_optimum_description(false);
   return description;
 }
 
@@ -189,29 +194,39 @@ const Description<TrialFound>& refused_trial_description() {
   }();
   return description;
 }
-const Description<TrialFound>& trial_description() {
+Description<TrialFound> made_trial_description(bool drive_train) {
   using R = TrialFound;
-  static const Description<R> description = [] {
-    Description<R> d;
-    add_model(d);
+  Description<R> d;
+  add_model(d);
+  if (drive_train) {
     const auto name_of_part = [](const auto* part) {
       return part ? std::optional<std::string>(part->model) : std::nullopt;
     };
-    return d.sometimes("gearbox", "", "of a list", [name_of_part](const R& r) { return name_of_part(r.trial.gearbox); })
-        .sometimes("battery", "", "of a list", [name_of_part](const R& r) { return name_of_part(r.trial.battery); })
-        .sometimes(
-            "choices", "", "values of the discrete parameters, by key",
-            [](const R& r) {
-              Json choices = Json::object();
-              for (std::size_t k = 0; k < r.file.choices.size(); ++k) {
-                choices[r.file.choices[k].parameter.key] = r.trial.choices[k];
-              }
-              return choices.empty() ? std::nullopt : std::optional(choices);
-            },
-            schema::by_name(Json(true)))
-        .part("result", "the optimum with it", optimum_description(),
-              [](const R& r) { return OptimumFound{trial_study(r.file, r.trial), r.trial.result}; });
-  }();
+    d.sometimes("gearbox", "", "of a list", [name_of_part](const R& r) {
+       return name_of_part(r.trial.gearbox);
+     }).sometimes("battery", "", "of a list", [name_of_part](const R& r) { return name_of_part(r.trial.battery); });
+  }
+  return d
+      .sometimes(
+          "choices", "", "values of the discrete parameters, by key",
+          [](const R& r) {
+            Json choices = Json::object();
+            for (std::size_t k = 0; k < r.file.choices.size(); ++k) {
+              choices[r.file.choices[k].parameter.key] = r.trial.choices[k];
+            }
+            return choices.empty() ? std::nullopt : std::optional(choices);
+          },
+          schema::by_name(Json(true)))
+      .part("result", "the optimum with it", made_optimum_description(drive_train),
+            [](const R& r) { return OptimumFound{trial_study(r.file, r.trial), r.trial.result}; });
+}
+
+const Description<TrialFound>& trial_description() {
+  static const Description<TrialFound> description = made_trial_description(false);
+  return description;
+}
+const Description<TrialFound>& drive_train_description() {
+  static const Description<TrialFound> description = made_trial_description(true);
   return description;
 }
 
@@ -375,8 +390,10 @@ const Description<FrontFound>& front_description() {
 
 Json optimum_schema() { return optimum_description().schema(); }
 Json motors_schema() { return trials_description().schema(); }
-Json trial_schema() { return trial_description().schema(); }
-Json trial_json(const OptimiseFile& file, const MotorTrial& trial) { return trial_description().json({file, trial}); }
+Json drive_train_schema() { return drive_train_description().schema(); }
+Json drive_train_json(const OptimiseFile& file, const MotorTrial& trial) {
+  return drive_train_description().json({file, trial});
+}
 Json front_schema() { return front_description().schema(); }
 
 }  // namespace described

@@ -1,4 +1,4 @@
-// One combination with its optimum as JSON; what lists of motors and drive trains have in common.
+// One combination of a drive train with its optimum as JSON.
 #pragma once
 
 #include "report/described.hpp"
@@ -6,7 +6,7 @@
 
 namespace wingbeat::described {
 
-Json trial_schema();
-Json trial_json(const OptimiseFile& file, const MotorTrial& trial);
+Json drive_train_schema();
+Json drive_train_json(const OptimiseFile& file, const MotorTrial& trial);
 
 }  // namespace wingbeat::described

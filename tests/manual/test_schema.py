@@ -72,9 +72,11 @@ upper = "{upper}"
 """
 DRIVE_TRAINS = """[study]
 vehicle = "x-wing-battery"
+{more}
 [drive_train]
 mass_without = "7 g"
-refine = 2
+refine = 1
+screen = 1
 [motors]
 catalogue = "{data}/motors/motors.csv"
 within_nominal_current = false
@@ -84,12 +86,8 @@ catalogue = "{data}/motors/gearboxes.csv"
 catalogue = "{data}/motors/batteries.csv"
 [objective]
 minimise = "power_electrical_w"
-[[parameter]]
-key = "friction.radius"
-values = [0.0003, 0.0004]
-[[constraint]]
-metric = "lift_to_weight"
-at_least = 1
+starts = 2
+screen = 16
 """
 MOTORS = """[motors]
 catalogue = "{catalogue}"
@@ -331,10 +329,18 @@ class Schema(unittest.TestCase):
         self.check("optimise", self.file("motors-front.toml", FRONT + catalogue))
         none = self.check("optimise", self.file("no-front.toml", FRONT + BEYOND), statuses=(0, 1, 3))
         self.assertNotIn("front", none)
-        trains = self.check("optimise", self.file("trains.toml", DRIVE_TRAINS.format(data=DATA)))
-        self.assertEqual(trains["screening"]["combinations"], 2 * len(trains["drive_trains"][0]["choices"]) * 960)
+        choice = '[[parameter]]\nkey = "friction.radius"\nvalues = [0.0003, 0.0004]\n'
+        least = '[[constraint]]\nmetric = "lift_to_weight"\nat_least = 1\n'
+        trains = self.check("optimise", self.file("trains.toml", DRIVE_TRAINS.format(data=DATA, more="") + choice + least))
+        self.assertEqual(trains["screening"]["combinations"], 2 * 960)
         self.assertIn("gear_torque", trains["drive_trains"][0]["result"])
         self.assertIn("battery", trains["drive_trains"][0])
+        # One search ends at a constraint, another between its bounds.
+        duty = '[[parameter]]\nkey = "supply.duty"\nlower = 0.5\nupper = 1\n'
+        self.check("optimise", self.file("duty.toml", DRIVE_TRAINS.format(data=DATA, more="") + duty + least))
+        held = 'hold = { lift_to_weight = 1 }\n[set]\nspring.stiffness = "0 N m/rad"\n'
+        springs = '[[parameter]]\nkey = "spring.stiffness"\nlower = "0 N m/rad"\nupper = "0.1 N m/rad"\n'
+        self.check("optimise", self.file("held.toml", DRIVE_TRAINS.format(data=DATA, more=held) + springs))
         self.everything_is_written("optimise")
 
     def test_endurance(self):
