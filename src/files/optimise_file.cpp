@@ -382,8 +382,7 @@ class OptimiseReader : public detail::StudySections {
     refuse(node, section + ".catalogue", reason);
   }
 
-  // ---- [drive_train], [gearboxes], [batteries]
-
+  // [drive_train], [gearboxes], [batteries]
   void read_drive_train(OptimiseFile& file) {
     const TomlNode* const section = root_.find("drive_train");
     const TomlNode* const gearboxes = root_.find("gearboxes");
