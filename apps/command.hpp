@@ -37,6 +37,7 @@ void add_reproduce(CLI::App& program, Action& action);
 void add_new(CLI::App& program, Action& action);
 void add_scale(CLI::App& program, Action& action);
 void add_synthesise(CLI::App& program, Action& action);
+void add_validate(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);
 void add_metrics(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);

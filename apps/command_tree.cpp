@@ -51,6 +51,7 @@ std::unique_ptr<CLI::App> command_tree(Action& action) {
   add_new(*program, action);
   add_scale(*program, action);
   add_synthesise(*program, action);
+  add_validate(*program, action);
   add_keys(*program, action);
   add_metrics(*program, action);
   add_schema(*program, action);

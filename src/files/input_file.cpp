@@ -30,6 +30,7 @@ Shelf shelf_of(InputKind kind) {
     case InputKind::bench: return {"bench", "bench file", "bench files"};
     case InputKind::datasheet: return {"motors", "data sheet", "data sheets"};
     case InputKind::published: return {"published", "file of published values", "files of published values"};
+    case InputKind::measured: return {"measured", "measured file", "measured files"};
   }
   return {};
 }

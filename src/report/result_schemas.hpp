@@ -18,6 +18,7 @@ nlohmann::ordered_json identification_schema();
 nlohmann::ordered_json control_schema();
 nlohmann::ordered_json scaling_schema();
 nlohmann::ordered_json synthesis_schema();
+nlohmann::ordered_json validation_schema();
 nlohmann::ordered_json keys_schema();
 nlohmann::ordered_json metrics_schema();
 

@@ -24,7 +24,7 @@ Json optimise_schema() {
        schema::with_text(described::front_schema(), "several objectives")});
 }
 
-constexpr std::array<std::pair<std::string_view, Json (*)()>, 15> schemas = {
+constexpr std::array<std::pair<std::string_view, Json (*)()>, 16> schemas = {
     {{"run", described::run_schema},
      {"compare", described::comparison_schema},
      {"sweep", described::sweep_schema},
@@ -38,6 +38,7 @@ constexpr std::array<std::pair<std::string_view, Json (*)()>, 15> schemas = {
      {"reproduce", described::claims_schema},
      {"scale", described::scaling_schema},
      {"synthesise", described::synthesis_schema},
+     {"validate", described::validation_schema},
      {"keys", described::keys_schema},
      {"metrics", described::metrics_schema}}};
 

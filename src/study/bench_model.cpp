@@ -240,7 +240,7 @@ SteadyFlapping BenchModel::orbit_at_frequency(std::size_t n, Vehicle<double>& ve
   const double wanted = points_[n].value;
   if (!drive_of(vehicle).voltage_sets_frequency) {
     vehicle.drive_frequency = wanted;
-    return orbit(n, vehicle, vehicle.voltage, reporting);
+    return orbit(n, vehicle, fit_.logs[points_[n].log].amplitude.value_or(vehicle.voltage), reporting);
   }
   const double close = std::max(3.0 * fit_.tolerance, 1e-6);
   double& start = voltages_[n];
@@ -296,6 +296,7 @@ void BenchModel::differentiate_point(std::size_t n, const Design<GradientJet>& s
   vehicle.vehicle.voltage = GradientJet(vehicle.vehicle.voltage.a);
   if (point.given == Given::frequency || std::isfinite(point.drive_frequency)) {
     vehicle.vehicle.drive_frequency = GradientJet(vehicle.vehicle.drive_frequency.a);
+    if (const auto amplitude = fit_.logs[point.log].amplitude) vehicle.vehicle.voltage = GradientJet(*amplitude);
   }
   const OrbitGradient g = orbit_gradient(orbits_[n], vehicle,
                                          {.held = point.given == Given::voltage ? Held::voltage : Held::frequency,

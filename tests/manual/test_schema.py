@@ -243,6 +243,11 @@ class Schema(unittest.TestCase):
         self.check("synthesise", "slider-crank", *target)
         self.everything_is_written("synthesise")
 
+    def test_validate(self):
+        self.check("validate")
+        self.check("validate", "gammabot-thrust", "robobee-numkin-becky")
+        self.everything_is_written("validate")
+
     def test_a_wrong_value_is_refused(self):
         validator = jsonschema.Draft202012Validator(schema_of("run"))
         shown = self.printed("run", "friction2022")

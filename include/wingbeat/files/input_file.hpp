@@ -12,13 +12,11 @@
 namespace wingbeat {
 
 /// What a file is expected to hold: where a file of that name is looked for among the program's own.
-enum class InputKind { vehicle, study, bench, datasheet, published };
+enum class InputKind { vehicle, study, bench, datasheet, published, measured };
 template <>
-inline constexpr std::pair<const char*, InputKind> names_of<InputKind>[] = {{"vehicle", InputKind::vehicle},
-                                                                            {"study", InputKind::study},
-                                                                            {"bench", InputKind::bench},
-                                                                            {"datasheet", InputKind::datasheet},
-                                                                            {"published", InputKind::published}};
+inline constexpr std::pair<const char*, InputKind> names_of<InputKind>[] = {
+    {"vehicle", InputKind::vehicle},     {"study", InputKind::study},         {"bench", InputKind::bench},
+    {"datasheet", InputKind::datasheet}, {"published", InputKind::published}, {"measured", InputKind::measured}};
 
 /// The file that `argument` names: "-", a file that exists, the same with ".toml", or, for a name without a folder, the
 /// file that comes with the program ("friction2022": designs/friction2022.toml). Throws InputError, with the names that

@@ -86,6 +86,8 @@ struct BenchLog {
   std::vector<BenchRow> rows;
   int values_left_out = 0;         ///< cells without a value
   std::vector<int> rows_left_out;  ///< their lines
+  /// Of a direct drive whose frequency is given: the amplitude of its supply [V]; the vehicle's where it is empty.
+  std::optional<double> amplitude = {};
 };
 
 /// Standard deviation of a column's values.
