@@ -81,8 +81,7 @@ void add_validate(CLI::App& program, Action& action) {
   command->add_flag("--all", a->all, "Every measured set that comes with the program");
   add_json(command, a->json);
   add_threads(command, a->threads);
-  add_file(command, "--plot", a->plot, plot_extensions,
-           "Plot computed minus measured of one set to FILE.svg, .pdf or .png");
+  add_file(command, "--plot", a->plot, plot_extensions, "Plot the differences of one set to FILE.svg, .pdf or .png");
   add_plot_width(command, a->plot_width);
   add_force(*command, a->force);
   command->footer(

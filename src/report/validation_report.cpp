@@ -60,7 +60,7 @@ std::string stage_text(const ValidationStage& stage, std::size_t n) {
     std::string interval = "no interval";
     if (std::isfinite(p.lower_95)) interval = fmt::format("95 %: {:.4g} to {:.4g}", p.lower_95, p.upper_95);
     else if (p.at_bound) interval = "at a bound, no interval";
-    else if (p.undetermined != Undetermined::no) interval = "not determined, " + describe(p.undetermined);
+    else if (p.undetermined != Undetermined::no) interval = "not determined by these rows";
     out += fmt::format("      {} = {:.4g}{}  ({})\n", p.key, p.value.value_or(p.kept), unit, interval);
   }
   if (stage.misfit) {
@@ -196,6 +196,7 @@ std::string text_validation_summary(std::span<const ValidationSet> sets, std::sp
 void plot_validation(const ValidationSet& set, const ValidationResult& result, PlotFormat format,
                      const std::filesystem::path& file) {
   if (result.stages.empty()) throw std::runtime_error(set.name + " has no prediction to plot");
+  const ComparedQuantity& quantity = set.quantities.front();
   std::vector<PointPanel> panels;
   for (std::size_t s = 0; s < result.stages.size() && s < stages_in_a_table; ++s) {
     const ValidationStage& stage = result.stages[s];
@@ -204,18 +205,17 @@ void plot_validation(const ValidationSet& set, const ValidationResult& result, P
       PointSeries series{fitted ? "rows that fits may see" : "predicted rows", {}};
       for (std::size_t n = 0; n < set.points.size(); ++n) {
         const ValidationPoint& p = set.points[n];
-        const double off = stage.predicted[n] - p.measured;
+        const double off =
+            quantity.has_size ? 100.0 * (stage.predicted[n] / p.measured - 1.0) : stage.predicted[n] - p.measured;
         if (p.quantity == 0 && p.fitted == fitted && std::isfinite(off)) series.points.emplace_back(p.position, off);
       }
       if (!series.points.empty()) panel.series.push_back(std::move(series));
     }
     panels.push_back(std::move(panel));
   }
-  const ComparedQuantity& quantity = set.quantities.front();
-  plot_panels(panels,
-              {set.name + ": " + quantity.name, set.position_name,
-               fmt::format("computed − measured{}", quantity.unit == "1" ? "" : " (" + quantity.unit + ")"), 0.0},
-              format, file);
+  const std::string axis =
+      quantity.has_size ? "computed over measured, minus 1 (%)" : "computed − measured (" + quantity.unit + ")";
+  plot_panels(panels, {set.name + ": " + quantity.name, set.position_name, axis, 0.0}, format, file);
 }
 
 namespace described {

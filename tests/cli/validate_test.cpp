@@ -19,7 +19,7 @@ TEST_F(Validate, ListsWhatThereIsAndWhatIsNotPredicted) {
   ASSERT_EQ(o.status, 0) << o.err;
   EXPECT_THAT(o.out, HasSubstr("gammabot-thrust"));
   EXPECT_THAT(o.out, HasSubstr("Not predicted:\n"));
-  EXPECT_THAT(o.out, HasSubstr("ucl-rig-stroke: torque constant"));
+  EXPECT_THAT(o.out, HasSubstr("ucl-rig-stroke             torque constant"));
   const Json json = run({"validate", "--json"}).json();
   EXPECT_EQ(json["sets"].size(), 20U);
   for (const Json& set : json["sets"]) EXPECT_TRUE(set["stages"].empty());
@@ -57,6 +57,21 @@ TEST_F(Validate, ComputesASetWithAndWithoutAFit) {
   EXPECT_NEAR(fit["parameters"][0]["value"].get<double>(), above / below, 1e-6);
 }
 
+TEST_F(Validate, WithNothingFittedIsARunWithTheFilesSettings) {
+  const Json set = run({"validate", "purdue-flappy", "--json"}).json()["sets"][0];
+  const Json run8 = run({"run", "two-wing-direct-hinge", "--set", "supply.amplitude=8 V", "--set",
+                         "motor.friction_torque=2e-5 N m", "--set", "motor.gear_efficiency=0.9", "--json"})
+                        .json();
+  EXPECT_EQ(set["points"][1]["label"], "8 V");
+  EXPECT_FALSE(set["points"][1]["fitted"].get<bool>());
+  EXPECT_NEAR(set["stages"][0]["predicted"][1].get<double>(), run8["lift_mean_n"].get<double>(), 1e-6);
+  EXPECT_EQ(set["settings"]["motor.gear_efficiency"], "0.9");
+  // What is fitted is closer on the rows that the fit sees.
+  const auto rms = [&](int stage) { return set["stages"][stage]["misses"][0]["rms"].get<double>(); };
+  EXPECT_TRUE(set["stages"][1]["misses"][0]["fitted"].get<bool>());
+  EXPECT_LT(rms(1), rms(0));
+}
+
 TEST_F(Validate, PrintsEveryRowWithinAPage) {
   const Outcome o = run({"validate", "battery-eis-0", "ucl-rig-stroke"});
   ASSERT_EQ(o.status, 0) << o.err;
@@ -64,6 +79,7 @@ TEST_F(Validate, PrintsEveryRowWithinAPage) {
   EXPECT_THAT(o.out, HasSubstr("  resistance = "));
   EXPECT_THAT(o.out, HasSubstr("rms difference, predicted rows"));
   EXPECT_THAT(o.out, HasSubstr("not predicted"));
+  EXPECT_THAT(o.out, HasSubstr("\nPredicted rows, rms difference / size, %"));
   std::size_t longest = 0, begin = 0;
   while (begin < o.out.size()) {
     const std::size_t end = o.out.find('\n', begin);

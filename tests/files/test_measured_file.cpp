@@ -115,7 +115,7 @@ class RefusedFile : public testing::Test {
 TEST_F(RefusedFile, SaysWhereAndWhat) {
   EXPECT_EQ(refusal("robobee-sdab1", "robobee3d", "robobee3d"), "read");
   EXPECT_THAT(refusal("robobee-sdab1", "licence", "license"),
-              HasSubstr(":4:1: measured.license: unknown key; did you mean measured.licence?"));
+              HasSubstr(":4:1: measured.license: unknown key; did you mean licence?"));
   EXPECT_THAT(refusal("battery-eis-0", "[1, 17.175, -3.065]", "[1, 17.175]"),
               HasSubstr("data.rows[1]: has 2 cells, but there are 3 columns"));
   EXPECT_THAT(refusal("battery-eis-0", "17.175", "true"),

@@ -22,8 +22,9 @@ std::string text_validation_summary(std::span<const ValidationSet> sets, std::sp
 /// One JSON object with the list of sets; `results` is empty where nothing was computed, else of the same length.
 std::string json_validation(std::span<const ValidationSet> sets, std::span<const ValidationResult> results);
 
-/// Computed minus measured of the first quantity over what was set, a panel for each stage but those that only scale
-/// another. Throws like plot_cycle, and std::runtime_error where the set has no prediction.
+/// Differences of the first quantity, in shares of the measured numbers where these have a size, over what was set, a
+/// panel for each stage but those that only scale another. Throws like plot_cycle, and std::runtime_error where the set
+/// has no prediction.
 void plot_validation(const ValidationSet& set, const ValidationResult& result, PlotFormat format,
                      const std::filesystem::path& file);
 
