@@ -30,8 +30,8 @@ class DifferencedResiduals : public ceres::CostFunction {
   std::vector<double> natural(const double* scaled) const {
     std::vector<double> x;
     for (std::size_t k = 0; k < parameters_.size(); ++k) {
-      const auto& [parameter, lower, upper, start] = parameters_[k];
-      x.push_back(std::clamp(lower + scaled[k] * (upper - lower), lower, upper));
+      const FreeParameter& p = parameters_[k];
+      x.push_back(std::clamp(p.lower + scaled[k] * (p.upper - p.lower), p.lower, p.upper));
     }
     return x;
   }
