@@ -325,9 +325,9 @@ class MeasuredReader {
       line->known_keys(line_keys);
       const double slope = table_.named(*line, "slope", line->needed_text("slope", "a quantity of the rows"));
       const double zero = table_.named(*line, "zero", line->needed_text("zero", "a quantity of the rows"));
-      const TomlNode& at = line->at("at");
-      if (!line->has("at") || at.kind != Kind::array) line->refuse(at, "at", "expected a list of voltages");
-      for (const TomlNode& item : at.items) {
+      const TomlNode& voltages = line->at("at");
+      if (!line->has("at") || voltages.kind != Kind::array) line->refuse(voltages, "at", "expected a list of voltages");
+      for (const TomlNode& item : voltages.items) {
         if (item.kind != Kind::number || !(item.number > 0.0)) line->refuse(item, "at", "expected voltages > 0");
         keys.push_back({{item.number, {}, false}});
         problem.voltages.push_back(voltage_per_value * item.number);

@@ -59,8 +59,8 @@ std::string stage_text(const ValidationStage& stage, std::size_t n) {
     const std::string unit = p.unit == "1" ? "" : " " + p.unit;
     std::string interval = "no interval";
     if (std::isfinite(p.lower_95)) interval = fmt::format("95 %: {:.4g} to {:.4g}", p.lower_95, p.upper_95);
+    else if (!p.value || p.undetermined != Undetermined::no) interval = "not determined by these rows";
     else if (p.at_bound) interval = "at a bound, no interval";
-    else if (p.undetermined != Undetermined::no) interval = "not determined by these rows";
     out += fmt::format("      {} = {:.4g}{}  ({})\n", p.key, p.value.value_or(p.kept), unit, interval);
   }
   if (stage.misfit) {
@@ -72,11 +72,11 @@ std::string stage_text(const ValidationStage& stage, std::size_t n) {
 
 /// Decimals that show the largest of the measured numbers of a quantity with four digits.
 int decimals_of(const ValidationSet& set, std::size_t quantity) {
-  double most = 0.0;
+  double largest = 0.0;
   for (const ValidationPoint& p : set.points) {
-    if (p.quantity == quantity) most = std::max(most, std::abs(p.measured));
+    if (p.quantity == quantity) largest = std::max(largest, std::abs(p.measured));
   }
-  return most > 0.0 ? std::clamp(3 - int(std::floor(std::log10(most))), 0, 6) : 3;
+  return largest > 0.0 ? std::clamp(3 - int(std::floor(std::log10(largest))), 0, 6) : 3;
 }
 
 std::string number(double x, int decimals) {
@@ -197,24 +197,38 @@ void plot_validation(const ValidationSet& set, const ValidationResult& result, P
                      const std::filesystem::path& file) {
   if (result.stages.empty()) throw std::runtime_error(set.name + " has no prediction to plot");
   const ComparedQuantity& quantity = set.quantities.front();
+  // In per cent where that has two digits.
+  double largest = 0.0;
+  const std::size_t shown = std::min<std::size_t>(result.stages.size(), stages_in_a_table);
+  for (std::size_t s = 0; s < shown; ++s) {
+    for (std::size_t n = 0; n < set.points.size(); ++n) {
+      const double off = result.stages[s].predicted[n] / set.points[n].measured - 1.0;
+      if (set.points[n].quantity == 0 && std::isfinite(off)) largest = std::max(largest, std::abs(off));
+    }
+  }
+  const double share = largest < 0.9 ? 100.0 : 1.0;
   std::vector<PointPanel> panels;
-  for (std::size_t s = 0; s < result.stages.size() && s < stages_in_a_table; ++s) {
+  for (std::size_t s = 0; s < shown; ++s) {
     const ValidationStage& stage = result.stages[s];
-    PointPanel panel{fmt::format("({}) {}", letter(s), stage.variant.empty() ? stage.name : stage.variant), {}};
+    // Names of several parameters are longer than a panel.
+    std::string name = stage.variant.empty() ? stage.name : stage.variant;
+    if (stage.parameters.size() > 1) name = fmt::format("{} numbers fitted", stage.parameters.size());
+    PointPanel panel{fmt::format("({}) {}", letter(s), name), {}};
     for (const bool fitted : {true, false}) {
       PointSeries series{fitted ? "rows that fits may see" : "predicted rows", {}};
       for (std::size_t n = 0; n < set.points.size(); ++n) {
         const ValidationPoint& p = set.points[n];
         const double off =
-            quantity.has_size ? 100.0 * (stage.predicted[n] / p.measured - 1.0) : stage.predicted[n] - p.measured;
+            quantity.has_size ? share * (stage.predicted[n] / p.measured - 1.0) : stage.predicted[n] - p.measured;
         if (p.quantity == 0 && p.fitted == fitted && std::isfinite(off)) series.points.emplace_back(p.position, off);
       }
       if (!series.points.empty()) panel.series.push_back(std::move(series));
     }
     panels.push_back(std::move(panel));
   }
-  const std::string axis =
-      quantity.has_size ? "computed over measured, minus 1 (%)" : "computed − measured (" + quantity.unit + ")";
+  const std::string axis = quantity.has_size
+                               ? fmt::format("computed over measured, minus 1{}", share > 1.0 ? " (%)" : "")
+                               : "computed − measured (" + quantity.unit + ")";
   plot_panels(panels, {set.name + ": " + quantity.name, set.position_name, axis, 0.0}, format, file);
 }
 

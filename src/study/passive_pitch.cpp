@@ -14,7 +14,7 @@ namespace {
 using PitchAngles = std::array<double, 2>;  // psi, psi'
 
 constexpr int beat_steps = 96;    // of one wing beat
-constexpr int most_beats = 400;   // after which pitching counts as not settled
+constexpr int max_beats = 400;    // after which pitching counts as not settled
 constexpr double repeats = 1e-8;  // by which two beats may differ [rad], and the same in velocity by the frequency
 
 }  // namespace
@@ -42,7 +42,7 @@ PassivePitch passive_pitch(const Vehicle<double>& v, const PeriodicAngle& stroke
   const double step = 1.0 / (frequency * beat_steps);
   PitchAngles x = {0.0, 0.0};
   PassivePitch pitch;
-  for (int beat = 0; beat < most_beats; ++beat) {
+  for (int beat = 0; beat < max_beats; ++beat) {
     const PitchAngles begin = x;
     double low = x[0], high = x[0], mean = 0.0, sine = 0.0, cosine = 0.0, stroke_sine = 0.0, stroke_cosine = 0.0;
     for (int n = 0; n < beat_steps; ++n) {

@@ -110,10 +110,10 @@ PrescribedLoads prescribed_loads(const PrescribedWings& wings, const PrescribedF
       for (std::size_t k = 0; k < Rule::abscissa().size(); ++k) {
         for (const double side : {-1.0, 1.0}) {
           const double t = middle + 0.5 * side * length * Rule::abscissa()[k];
-          const auto at = loads_at(wings, motion_of(flapping.stroke, flapping.frequency, t),
-                                   motion_of(flapping.pitch, flapping.frequency, t));
-          for (std::size_t q = 0; q < at.size(); ++q) {
-            mean[q] += 0.5 * length * Rule::weights()[k] * at[q] / period;
+          const auto loads = loads_at(wings, motion_of(flapping.stroke, flapping.frequency, t),
+                                      motion_of(flapping.pitch, flapping.frequency, t));
+          for (std::size_t q = 0; q < loads.size(); ++q) {
+            mean[q] += 0.5 * length * Rule::weights()[k] * loads[q] / period;
           }
         }
       }

@@ -264,9 +264,9 @@ double ratio_at_hover(const RunResult& hover, RatiosProblem::Kind kind) {
     RunOptions options;
     options.frequency = frequency * (n == 0 ? 1.0 - step : 1.0 + step);
     options.allow_extrapolation = true;
-    const RunResult at = run_design(hover.design, options);
-    if (at.status != FlappingStatus::flapping) return absent;
-    lift[n] = at.metrics[Metric::lift_mean];
+    const RunResult near = run_design(hover.design, options);
+    if (near.status != FlappingStatus::flapping) return absent;
+    lift[n] = near.metrics[Metric::lift_mean];
   }
   return std::log(lift[1] / lift[0]) / std::log((1.0 + step) / (1.0 - step));
 }
@@ -287,9 +287,9 @@ std::vector<ValidationStage> stages_of(const ValidationSet& set, const RatiosPro
 // ---- the resistance of a battery
 
 std::vector<ValidationStage> stages_of(const ValidationSet& set, const ResistanceProblem&) {
-  double most = 0.0;
-  for (const ValidationPoint& p : set.points) most = std::max(most, p.measured);
-  const std::vector<FreeParameter> one = {plain_parameter("resistance", "ohm", 0.0, 2.0 * most, most)};
+  double largest = 0.0;
+  for (const ValidationPoint& p : set.points) largest = std::max(largest, p.measured);
+  const std::vector<FreeParameter> one = {plain_parameter("resistance", "ohm", 0.0, 2.0 * largest, largest)};
   std::vector<ValidationStage> stages =
       stages_by_residuals(set, {one}, [&](const std::vector<FreeParameter>& parameters, const Numbers& x) {
         return Numbers(set.points.size(), parameters.empty() ? absent : x[0]);

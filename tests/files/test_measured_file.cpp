@@ -94,9 +94,9 @@ class RefusedFile : public testing::Test {
   /// What is said of the text of a set that ships, one part replaced.
   std::string refusal(const std::string& name, const std::string& part, const std::string& other) const {
     std::string text = read_text_file(folder + "/" + name + ".toml");
-    const auto at = text.find(part);
-    if (at == std::string::npos) return "no " + part;
-    text.replace(at, part.size(), other);
+    const auto found = text.find(part);
+    if (found == std::string::npos) return "no " + part;
+    text.replace(found, part.size(), other);
     const auto vehicle = text.find("\"../designs/");
     if (vehicle != std::string::npos) text.replace(vehicle, 3, std::string("\"") + WINGBEAT_DATA);
     const fs::path file = folder_ / "set.toml";
