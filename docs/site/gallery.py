@@ -14,7 +14,7 @@ entry = re.compile(r"^(?P<text>[^\n#`|<][^\n]*(?:\n[^\n]+)*)\n\n```\n(?P<command
 def figure_of(command):
     """The file that a command draws."""
     words = shlex.split(command)
-    drawn = [words[n + 1] for n, word in enumerate(words[:-1]) if word in ("--plot", "--plot-power")]
+    drawn = [words[n + 1] for n, word in enumerate(words[:-1]) if word in ("--plot", "--plot-power", "--plot-cycles")]
     if len(drawn) != 1:
         raise LookupError(f"docs/gallery.md: {command} does not draw one figure")
     return drawn[0]

@@ -38,8 +38,8 @@ BenchFit with_bench_unknowns(BenchFit fit) {
     for (const BenchRow& row : log.rows) bursts.insert(row.burst);
     if (log.in_time && !log.phase_known) {
       for (const int burst : bursts) {
-        const std::string of = bursts.size() > 1 ? format(", burst %d", burst) : "";
-        fit.parameters.push_back(unknown("phase of " + short_name(log.file) + of, "rad", -two_pi, 2.0 * two_pi, pi,
+        const std::string which = bursts.size() > 1 ? format(", burst %d", burst) : "";
+        fit.parameters.push_back(unknown("phase of " + short_name(log.file) + which, "rad", -two_pi, 2.0 * two_pi, pi,
                                          {Kind::phase, l, burst}));
       }
     }

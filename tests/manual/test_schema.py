@@ -298,6 +298,8 @@ class Schema(unittest.TestCase):
 
     def test_fit(self):
         self.check("fit", DATA / "bench/flapper.toml")
+        waveforms = self.check("fit", DATA / "bench/waveforms.toml", "--no-profiles")
+        self.assertEqual({p["of"] for p in waveforms["parameters"]}, {"vehicle", "balance", "log"})
         rows = [f"{2 + n / 2},{self.printed('run', 'friction2022-springs', '--voltage', f'{2 + n / 2} V')['frequency_hz']!r}"
                 for n in range(3)]
         self.file("log.csv", "\n".join(["voltage_V,frequency_Hz", *rows]) + "\n")
@@ -307,6 +309,12 @@ class Schema(unittest.TestCase):
         beyond = self.check("fit", self.file("bench.toml", BENCH), "--no-profiles", statuses=(3,))
         self.assertEqual([row["row"] for row in beyond["unreached"]], [f"{self.folder / 'log.csv'}:2"])
         self.everything_is_written("fit")
+
+    def test_read_bench(self):
+        self.check("read-bench", DATA / "bench/spreadsheet.csv")
+        readings = self.check("read-bench", DATA / "bench/waveforms.toml")
+        self.assertEqual([burst["number"] for burst in readings["logs"][0]["bursts"]], [1, 2])
+        self.everything_is_written("read-bench")
 
     def test_tolerance(self):
         for method in ("sobol", "monte-carlo"):
