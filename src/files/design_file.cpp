@@ -9,7 +9,6 @@
 #include <cstring>
 #include <fstream>
 #include <memory>
-#include <ranges>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -260,16 +259,18 @@ class Reader {
   }
 
   bool is_required(const ParameterText& key) const {
-    if (key.fallback != "required" || key.has_alternative()) return false;
     // read_coefficients() requires the numbers of a section that is given.
-    return !is_section(key.required_unless) && !is_spared(key);
+    return key.fallback == "required" && !key.has_alternative() && !is_section(key.required_unless) && !is_spared(key);
   }
 
   /// By one of the keys that take its place.
   bool is_spared(const ParameterText& key) const {
-    return std::ranges::any_of(std::views::split(key.required_unless, '|'), [&](const auto& path) {
-      return document_.find(std::string_view(path.begin(), path.end())) != nullptr;
-    });
+    for (std::string_view rest = key.required_unless; !rest.empty();) {
+      const std::size_t end = std::min(rest.find('|'), rest.size());
+      if (document_.find(rest.substr(0, end))) return true;
+      rest.remove_prefix(std::min(end + 1, rest.size()));
+    }
+    return false;
   }
 
   /// Each at its own line; validate() sees to what needs another key.
@@ -488,9 +489,8 @@ Design<double> parse_design(std::string_view text, std::string_view file_name, s
 
 Design<double> read_design(const std::filesystem::path& file, std::span<const Setting> settings,
                            std::span<const std::string> overrides) {
-  const std::filesystem::path folder = file.parent_path();
   return design_of(parse_document(read_text_file(file), input_name(file)), settings, overrides,
-                   [&](const std::string& name) { return read_text_file(folder / name); });
+                   [&](const std::string& name) { return read_text_file(file.parent_path() / name); });
 }
 
 Design<double> read_design(const std::filesystem::path& file, std::span<const std::string> overrides) {

@@ -8,6 +8,7 @@
 #include "files/part_list.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/units.hpp"
 
 namespace wingbeat::detail {
 namespace {

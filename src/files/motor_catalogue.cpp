@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "files/part_list.hpp"
+#include "wingbeat/files/units.hpp"
 
 namespace wingbeat::detail {
 namespace {

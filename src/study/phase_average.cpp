@@ -8,6 +8,7 @@
 
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/cycle/metric_values.hpp"
 
 namespace wingbeat {
 namespace {
