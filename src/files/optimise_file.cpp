@@ -427,12 +427,12 @@ class OptimiseReader : public detail::StudySections {
     };
     const bool weighed = design.mass.has_value();
     read_list(gearboxes, "gearboxes", "ratio",
-              [&](const TomlNode& node, const auto& path, const auto& list, auto form) {
+              [&](const TomlNode& node, const auto& path, const auto& list, const auto& form) {
                 file.drive_train.gearboxes = detail::parse_gearboxes(list, path, form, weighed);
                 require_usable(node, "gearboxes", "gearbox", file.drive_train.gearboxes);
               });
     read_list(batteries, "batteries", "capacity",
-              [&](const TomlNode& node, const auto& path, const auto& list, auto form) {
+              [&](const TomlNode& node, const auto& path, const auto& list, const auto& form) {
                 if (!has_battery(design.supply.type)) {
                   refuse(*batteries, "batteries",
                          "needs a vehicle with supply.type = \"battery\", whose discharge curve the batteries have");
