@@ -63,10 +63,10 @@ int run(const ExportArguments& arguments) {
   options.identifier = fmu::identifier_of(fs::path(arguments.output).stem().string());
   const Design<double> design = read_design(arguments.vehicle, arguments.overrides);
   OutputFile output("-o", arguments.output, OutputRules{".fmu", arguments.force});
+  const fmu::FmuContent content = fmu::fmu_content(design, options);
   const fs::path linux_binary = required_file("wingbeat-fmu.so", "the binary of all FMUs");
   const fs::path windows_binary = module_file("wingbeat-fmu.dll");
 
-  const fmu::FmuContent content = fmu::fmu_content(design, options);
   const bool second = options.version == fmu::FmiVersion::fmi2;
   std::vector<std::pair<std::string, std::string>> files = {
       {"modelDescription.xml", content.description},
