@@ -7,12 +7,12 @@
 #include <utility>
 
 #include "files/bench_columns.hpp"
+#include "files/free_parameter.hpp"
 #include "files/input_errors.hpp"
 #include "files/table_form.hpp"
 #include "files/toml_fields.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/vehicle/drive.hpp"
@@ -87,16 +87,19 @@ class BenchReader {
     }
   }
 
+  static const char* positive_text(const BalanceNumber& n) { return n.may_be_zero ? "must be >= 0" : "must be > 0"; }
+
   void read_balance(BenchFit& fit) const {
     const auto section = root_.table("balance");
     if (!section) return;
-    const std::string_view keys[] = {"mass", "stiffness", "damping"};
+    std::vector<std::string_view> keys;
+    for (const BalanceNumber& n : balance_numbers) keys.push_back(n.key);
     section->known_keys(keys);
-    Balance balance{section->needed_quantity("mass", "kg"), section->needed_quantity("stiffness", "N/m"),
-                    section->needed_quantity("damping", "N s/m")};
-    if (!(balance.mass > 0.0)) section->refuse(section->at("mass"), "mass", "must be > 0");
-    if (!(balance.stiffness > 0.0)) section->refuse(section->at("stiffness"), "stiffness", "must be > 0");
-    if (!(balance.damping >= 0.0)) section->refuse(section->at("damping"), "damping", "must be >= 0");
+    Balance balance;
+    for (const BalanceNumber& n : balance_numbers) {
+      const double x = balance.*n.number = section->needed_quantity(n.key, n.unit);
+      if (!(n.may_be_zero ? x >= 0.0 : x > 0.0)) section->refuse(section->at(n.key), n.key, positive_text(n));
+    }
     fit.balance = balance;
   }
 
@@ -105,20 +108,13 @@ class BenchReader {
     free.of_bench = balance_unknown(key);
     if (!free.of_bench) return false;
     if (!fit.balance) p.refuse(p.at("key"), "key", key + " needs the section [balance]");
-    using Kind = BenchUnknown::Kind;
-    const Kind kind = free.of_bench->kind;
+    const BalanceNumber& n = *free.of_bench->of_balance;
     free.parameter.key = key;
-    free.parameter.unit = kind == Kind::balance_mass ? "kg" : kind == Kind::balance_stiffness ? "N/m" : "N s/m";
-    free.lower = p.needed_quantity("lower", free.parameter.unit);
-    free.upper = p.needed_quantity("upper", free.parameter.unit);
-    const Balance& b = *fit.balance;
-    free.start = p.quantity("start", free.parameter.unit)
-                     .value_or(kind == Kind::balance_mass        ? b.mass
-                               : kind == Kind::balance_stiffness ? b.stiffness
-                                                                 : b.damping);
-    if (kind == Kind::balance_damping ? free.lower < 0.0 : !(free.lower > 0.0)) {
-      p.refuse(p.at("lower"), "lower", kind == Kind::balance_damping ? "must be >= 0" : "must be > 0");
-    }
+    free.parameter.unit = n.unit;
+    free.lower = p.needed_quantity("lower", n.unit);
+    free.upper = p.needed_quantity("upper", n.unit);
+    free.start = p.quantity("start", n.unit).value_or((*fit.balance).*n.number);
+    if (!(n.may_be_zero ? free.lower >= 0.0 : free.lower > 0.0)) p.refuse(p.at("lower"), "lower", positive_text(n));
     return true;
   }
 
@@ -129,13 +125,7 @@ class BenchReader {
       const std::string key = p.needed_text("key", "a number of the vehicle file, such as \"friction.radius\"");
       FreeParameter free;
       if (!read_of_balance(p, key, fit, free)) {
-        try {
-          free.parameter = design_parameter(key);
-        } catch (const ParameterError& error) {
-          p.refuse(p.at("key"), "key", error.what());
-        }
-        free.lower = p.needed_quantity("lower", free.parameter.unit);
-        free.upper = p.needed_quantity("upper", free.parameter.unit);
+        free = detail::bounded_parameter(p, key);
         const std::optional<double> own = free.parameter.value(fit.design);
         const auto start = p.quantity("start", free.parameter.unit);
         if (!start && !own) p.refuse("start", fmt::format("missing; the vehicle file has no {}", key));

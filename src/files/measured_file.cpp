@@ -8,13 +8,13 @@
 #include <optional>
 #include <type_traits>
 
+#include "files/free_parameter.hpp"
 #include "files/measured_table.hpp"
 #include "files/toml_document.hpp"
 #include "files/toml_fields.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/cycle/metrics.hpp"
 #include "wingbeat/files/design_file.hpp"
-#include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -184,14 +184,7 @@ class MeasuredReader {
       const std::string_view keys[] = {"key", "lower", "upper"};
       p.known_keys(keys);
       const std::string key = p.needed_text("key", "a number of the vehicle file");
-      FreeParameter free{};
-      try {
-        free.parameter = design_parameter(key);
-      } catch (const ParameterError& error) {
-        p.refuse(p.at("key"), "key", error.what());
-      }
-      free.lower = p.needed_quantity("lower", free.parameter.unit);
-      free.upper = p.needed_quantity("upper", free.parameter.unit);
+      FreeParameter free = detail::bounded_parameter(p, key);
       const std::optional<double> own = free.parameter.value(design);
       if (!own) p.refuse(p.at("key"), "key", fmt::format("the vehicle file has no {}", key));
       free.start = *own;

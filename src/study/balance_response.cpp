@@ -56,9 +56,9 @@ BalanceResponse::Slopes BalanceResponse::slopes(const std::vector<std::complex<d
     const complex<double> divisor(k - m * omega * omega, omega * c), part = harmonics[std::size_t(h)] * z;
     const complex<double> per_square = k / (divisor * divisor) * part;
     s.periods += (k / divisor * part * i * (two_pi * h)).real();
-    s.mass += (per_square * omega * omega).real();
-    s.stiffness += (part / divisor - per_square).real();
-    s.damping -= (per_square * i * omega).real();
+    s.balance.mass += (per_square * omega * omega).real();
+    s.balance.stiffness += (part / divisor - per_square).real();
+    s.balance.damping -= (per_square * i * omega).real();
     s.frequency += (per_square * (2.0 * m * omega - i * c) * (two_pi * h)).real();
     z *= turn;
   }

@@ -32,7 +32,8 @@ class BalanceResponse {
 
   /// Derivatives of the reading by what changes the response alone.
   struct Slopes {
-    double periods, mass, stiffness, damping, frequency;
+    double periods, frequency;
+    Balance balance;  ///< by its numbers
   };
   Slopes slopes(const std::vector<std::complex<double>>& harmonics, double periods) const;
 

@@ -11,9 +11,9 @@
 namespace wingbeat {
 namespace {
 
-/// A quantity of an instant, on dual numbers or along the cycle.
-template <class S>
-const S& at(const InstantValues<S>& i, WaveformQuantity q) {
+/// A quantity of an instant: of a row, on dual numbers or along the cycle.
+template <class Instant>
+const auto& at(const Instant& i, WaveformQuantity q) {
   switch (q) {
     case WaveformQuantity::crank_speed: return i.crank_speed;
     case WaveformQuantity::current: return i.current;
@@ -27,21 +27,6 @@ const S& at(const InstantValues<S>& i, WaveformQuantity q) {
     case WaveformQuantity::voltage: return i.voltage;
   }
   return i.current;
-}
-double at(const WaveformRow& r, WaveformQuantity q) {
-  switch (q) {
-    case WaveformQuantity::crank_speed: return r.crank_speed;
-    case WaveformQuantity::current: return r.current;
-    case WaveformQuantity::flapping_velocity: return r.flapping_velocity;
-    case WaveformQuantity::lift:
-    case WaveformQuantity::balance_force: return r.lift;
-    case WaveformQuantity::rod_force: return r.rod_force;
-    case WaveformQuantity::motor_torque: return r.motor_torque;
-    case WaveformQuantity::stroke_angle: return r.stroke_angle;
-    case WaveformQuantity::pitch_angle: return r.pitch_angle;
-    case WaveformQuantity::voltage: return r.voltage;
-  }
-  return absent;
 }
 
 /// What a crank that does not turn shows: a prediction far off, so that no fit gains by stalling a row.
@@ -122,10 +107,7 @@ Balance BenchModel::balance_at(const std::vector<double>& x) const {
   Balance balance = fit_.balance.value_or(Balance{});
   for (std::size_t k = 0; k < x.size(); ++k) {
     const auto& b = fit_.parameters[k].of_bench;
-    if (!b) continue;
-    if (b->kind == BenchUnknown::Kind::balance_mass) balance.mass = x[k];
-    if (b->kind == BenchUnknown::Kind::balance_stiffness) balance.stiffness = x[k];
-    if (b->kind == BenchUnknown::Kind::balance_damping) balance.damping = x[k];
+    if (b && b->of_balance) balance.*b->of_balance->number = x[k];
   }
   return balance;
 }
@@ -323,7 +305,7 @@ void BenchModel::differentiate_point(std::size_t n, const Design<GradientJet>& s
     return slope(instant.time, s) * frequency.a + instant.time.a * slope(frequency, s);
   };
   const auto at_fixed_share = [&](const GradientInstant& instant, WaveformQuantity q, std::size_t s) {
-    return slope(at<GradientJet>(instant, q), s) -
+    return slope(at(instant, q), s) -
            at(instant.slopes, q) * share_moves(instant, s) / (instant.slopes.time * frequency.a);
   };
   std::optional<BalanceResponse> response;
@@ -359,16 +341,13 @@ void BenchModel::differentiate_point(std::size_t n, const Design<GradientJet>& s
       }
       for (std::size_t k = 0; k < x_.size(); ++k) {
         const auto& b = fit_.parameters[k].of_bench;
-        if (!b) continue;
-        if (b->kind == BenchUnknown::Kind::balance_mass) set(o, k, by.mass);
-        if (b->kind == BenchUnknown::Kind::balance_stiffness) set(o, k, by.stiffness);
-        if (b->kind == BenchUnknown::Kind::balance_damping) set(o, k, by.damping);
+        if (b && b->of_balance) set(o, k, by.balance.*b->of_balance->number);
       }
       if (point.phase) set(o, *point.phase, by.periods / two_pi);
       continue;
     }
     for (std::size_t s = 0; s < which.size(); ++s) {
-      set(o, which[s], point.in_time ? at_fixed_share(instant, q, s) : slope(at<GradientJet>(instant, q), s));
+      set(o, which[s], point.in_time ? at_fixed_share(instant, q, s) : slope(at(instant, q), s));
     }
     if (point.phase) set(o, *point.phase, at(instant.slopes, q) / (instant.slopes.time * frequency.a * two_pi));
   }

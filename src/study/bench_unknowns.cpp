@@ -25,9 +25,12 @@ FreeParameter unknown(std::string key, const char* unit, double lower, double up
 }  // namespace
 
 std::optional<BenchUnknown> balance_unknown(const std::string& key) {
-  if (key == "balance.mass") return BenchUnknown{Kind::balance_mass};
-  if (key == "balance.stiffness") return BenchUnknown{Kind::balance_stiffness};
-  if (key == "balance.damping") return BenchUnknown{Kind::balance_damping};
+  for (const BalanceNumber& n : balance_numbers) {
+    if (key != std::string("balance.") + n.key) continue;
+    BenchUnknown unknown{Kind::balance};
+    unknown.of_balance = &n;
+    return unknown;
+  }
   return std::nullopt;
 }
 
@@ -102,15 +105,17 @@ void check_bench(const BenchFit& fit) {
   }
   if (!fit.balance) {
     for (const FreeParameter& p : fit.parameters) {
-      if (p.of_bench && p.of_bench->kind <= Kind::balance_damping) {
+      if (p.of_bench && p.of_bench->kind == Kind::balance) {
         throw ParameterError(p.parameter.key, "no log has readings of a balance");
       }
     }
     return;
   }
-  require(fit.balance->mass > 0.0, "balance.mass", "must be > 0", "kg", fit.balance->mass);
-  require(fit.balance->stiffness > 0.0, "balance.stiffness", "must be > 0", "N/m", fit.balance->stiffness);
-  require(fit.balance->damping >= 0.0, "balance.damping", "must be >= 0", "N s/m", fit.balance->damping);
+  for (const BalanceNumber& n : balance_numbers) {
+    const double x = (*fit.balance).*n.number;
+    require(n.may_be_zero ? x >= 0.0 : x > 0.0, (std::string("balance.") + n.key).c_str(),
+            n.may_be_zero ? "must be >= 0" : "must be > 0", n.unit, x);
+  }
 }
 
 }  // namespace wingbeat

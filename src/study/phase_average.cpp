@@ -185,13 +185,14 @@ int harmonics_by_bic(const HarmonicFit& fit, std::size_t samples, int allowed) {
   return best;
 }
 
-/// Phases of successive pieces of the record against a law, and the law corrected by them.
+/// By how much the phases of successive pieces of the record are ahead of a law [cycles], with weights.
 struct PhaseShifts {
   std::vector<double> time, shift, weight;
 };
 
-/// Shift of the phase, in cycles, as a polynomial of the time from the middle on; the standard error of its slope.
-double correct_by(const PhaseShifts& shifts, double factor, PhaseLaw& law, double& frequency_error) {
+/// Corrects the law by the shifts as a polynomial of the time from the middle on. Returns how much the phase changes by
+/// it over the record [cycles]; the standard error is that of the slope [Hz].
+double correct_by(const PhaseShifts& shifts, PhaseLaw& law, double& frequency_error) {
   const Eigen::Index count = Eigen::Index(shifts.time.size());
   const Eigen::Index order = count >= 8 ? 3 : 2;
   Eigen::MatrixXd design(count, order);
@@ -202,14 +203,14 @@ double correct_by(const PhaseShifts& shifts, double factor, PhaseLaw& law, doubl
     right[b] = w * shifts.shift[std::size_t(b)];
   }
   const Eigen::VectorXd solution = design.colPivHouseholderQr().solve(right);
-  law.frequency += factor * solution[1];
-  if (order == 3) law.rate += factor * 2.0 * solution[2];
+  law.frequency += solution[1];
+  if (order == 3) law.rate += 2.0 * solution[2];
   const double freedom = double(count - order);
   frequency_error = absent;
   if (freedom > 0.5) {
     const double variance = (design * solution - right).squaredNorm() / freedom;
     const Eigen::MatrixXd information = design.transpose() * design;
-    frequency_error = factor * std::sqrt(variance * information.ldlt().solve(Eigen::VectorXd::Unit(order, 1))[1]);
+    frequency_error = std::sqrt(variance * information.ldlt().solve(Eigen::VectorXd::Unit(order, 1))[1]);
   }
   return std::abs(solution[1]) * (shifts.time.back() - shifts.time.front());
 }
@@ -245,7 +246,7 @@ void refine_by_component(const std::vector<Channel>& channels, double duration, 
       shifts.weight.push_back(weight);
     }
     double error;
-    if (shifts.time.size() < 2 || correct_by(shifts, 1.0, law, error) < 1e-4) return;
+    if (shifts.time.size() < 2 || correct_by(shifts, law, error) < 1e-4) return;
   }
 }
 
@@ -286,7 +287,7 @@ double refine_by_course(const std::vector<Channel>& channels, double duration, P
       information += w * square(time - law.middle);
     }
     if (shifts.time.size() < 2) return error;
-    const double moved = correct_by(shifts, 1.0, law, error);
+    const double moved = correct_by(shifts, law, error);
     if (!std::isfinite(error) && information > 0.0) error = 1.0 / std::sqrt(information);
     if (moved < 1e-7) break;
   }
@@ -384,14 +385,13 @@ AveragedChannel averaged(const Channel& channel, double mean, const PhaseLaw& la
 PhaseAverage phase_average(const SignalRecord& record, const PhaseAverageOptions& options) {
   const std::size_t samples = record.time.size();
   if (int(samples) < least_samples) {
-    throw ParameterError(
-        "time", format("%zu samples are too few for a mean cycle; at least %d are needed", samples, least_samples));
+    throw ParameterError("time", format("a mean cycle needs at least %d samples, got %zu", least_samples, samples));
   }
   const std::vector<Channel> channels = channels_of(record);
   for (const Channel& c : channels) {
     if (int(c.value.size()) < least_samples) {
-      throw ParameterError("time", format("a column has %zu values, too few for a mean cycle; at least %d are needed",
-                                          c.value.size(), least_samples));
+      throw ParameterError("time", format("a mean cycle needs at least %d values of each column, got %zu",
+                                          least_samples, c.value.size()));
     }
   }
   const double duration = record.time.back() - record.time.front();

@@ -390,7 +390,7 @@ TEST_F(BenchFile, ReadsABalance) {
   EXPECT_NEAR(fit.balance->stiffness, 2e3, 1e-9);
   ASSERT_EQ(fit.parameters.size(), 1U);
   EXPECT_EQ(fit.parameters[0].start, 0.2);
-  EXPECT_EQ(fit.parameters[0].of_bench->kind, BenchUnknown::Kind::balance_damping);
+  EXPECT_EQ(fit.parameters[0].of_bench->of_balance->number, &Balance::damping);
   EXPECT_THAT(error_of(head + of_balance + deviation + log), HasSubstr("balance.damping needs the section [balance]"));
   EXPECT_THAT(
       error_of(head + "[balance]\nmass = \"0 g\"\nstiffness = \"2 kN/m\"\ndamping = 0\n" + parameter + deviation + log),
@@ -402,11 +402,11 @@ TEST_F(BenchFile, RecordsThatCannotBeUsedAreRefused) {
   write("signals.csv", "time_s,current_mA\n0,1\n0.1,2\n0.2,1\n");
   EXPECT_THAT(error_of(head + parameter + of_record), HasSubstr("voltage: missing: give voltage = \"3 V\""));
   EXPECT_THAT(error_of(head + parameter + of_record + "voltage = \"3 V\"\n"),
-              HasSubstr("signals.csv:2:1: time: 3 samples are too few for a mean cycle; at least 32 are needed"));
+              HasSubstr("signals.csv:2:1: time: a mean cycle needs at least 32 samples, got 3"));
   EXPECT_THAT(error_of(head + parameter + of_record + "voltage = \"3 V\"\nburst = \"1 ns\"\n"),
               HasSubstr("burst: 1e-09 s cuts the record into more bursts than it has rows"));
   EXPECT_THAT(error_of(head + parameter + of_record + "voltage = \"3 V\"\nunknown_zero = [\"lift\"]\n"),
-              HasSubstr("too few"));
+              HasSubstr("needs at least 32 samples"));
   EXPECT_THAT(error_of(head + parameter + deviation + log + "burst = \"1 s\"\n"),
               HasSubstr("log[1].burst: is of a record in time, and the file has no times"));
   EXPECT_THAT(error_of(head + parameter + deviation + log + "unknown_zero = [\"lift\"]\n"),

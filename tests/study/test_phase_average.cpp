@@ -143,7 +143,7 @@ TEST(PhaseAverage, RefusesWhatHasNoPeriod) {
   };
   Record r;
   r.duration = 0.01;
-  EXPECT_THAT(refusal(r.signals(course)), testing::HasSubstr("samples are too few"));
+  EXPECT_THAT(refusal(r.signals(course)), testing::HasSubstr("needs at least 32 samples, got "));
   r.duration = 0.1;
   PhaseAverageOptions about;
   about.frequency = 21.0;

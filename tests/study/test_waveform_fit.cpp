@@ -94,9 +94,9 @@ TEST(BalanceResponse, SlopesAgainstDifferences) {
     down.*member -= step;
     return difference(reading(place, up, f), reading(place, down, f), step);
   };
-  EXPECT_NEAR(s.mass, by(&Balance::mass), 1e-6 * std::abs(s.mass));
-  EXPECT_NEAR(s.stiffness, by(&Balance::stiffness), 1e-6 * std::abs(s.stiffness));
-  EXPECT_NEAR(s.damping, by(&Balance::damping), 1e-6 * std::abs(s.damping));
+  EXPECT_NEAR(s.balance.mass, by(&Balance::mass), 1e-6 * std::abs(s.balance.mass));
+  EXPECT_NEAR(s.balance.stiffness, by(&Balance::stiffness), 1e-6 * std::abs(s.balance.stiffness));
+  EXPECT_NEAR(s.balance.damping, by(&Balance::damping), 1e-6 * std::abs(s.balance.damping));
 }
 
 constexpr MeasuredQuantity waveform_of(WaveformQuantity q) { return {true, {}, q}; }
@@ -143,9 +143,7 @@ BenchFit all_quantities(const Case& c) {
   for (const char* key : {"balance.mass", "balance.stiffness", "balance.damping"}) {
     FreeParameter p{{key, ""}, 1e-6, 1e6, 0.0};
     p.of_bench = balance_unknown(key);
-    p.start = p.of_bench->kind == BenchUnknown::Kind::balance_mass        ? soft_balance.mass
-              : p.of_bench->kind == BenchUnknown::Kind::balance_stiffness ? soft_balance.stiffness
-                                                                          : soft_balance.damping;
+    p.start = soft_balance.*p.of_bench->of_balance->number;
     fit.parameters.push_back(p);
   }
   return with_bench_unknowns(fit);

@@ -72,6 +72,16 @@ struct Balance {
   double damping = 0.0;    ///< [N s/m]
 };
 
+/// One number of a balance, as bench files name it in [balance].
+struct BalanceNumber {
+  const char *key, *unit;
+  double Balance::* number;
+  bool may_be_zero;
+};
+inline constexpr BalanceNumber balance_numbers[] = {{"mass", "kg", &Balance::mass, false},
+                                                    {"stiffness", "N/m", &Balance::stiffness, false},
+                                                    {"damping", "N s/m", &Balance::damping, true}};
+
 struct BenchLog {
   std::string file;
   Condition condition = Condition::air;
@@ -100,15 +110,14 @@ struct Deviation {
 /// A number of the bench that is fitted beside the vehicle's parameters.
 struct BenchUnknown {
   enum class Kind {
-    balance_mass,
-    balance_stiffness,
-    balance_damping,
-    phase,  ///< of a log in time: the cycle's where its burst has the phase 0 [rad]
-    zero    ///< of a column of a log: what it shows at 0 [SI]
+    balance,  ///< a number of it
+    phase,    ///< of a log in time: the cycle's where its burst has the phase 0 [rad]
+    zero      ///< of a column of a log: what it shows at 0 [SI]
   } kind;
   std::size_t log = 0;                                         ///< of a phase or zero
   int burst = 0;                                               ///< of a phase
   WaveformQuantity quantity = WaveformQuantity::stroke_angle;  ///< of a zero
+  const BalanceNumber* of_balance = nullptr;
 };
 
 struct FreeParameter {
@@ -117,7 +126,7 @@ struct FreeParameter {
   std::optional<BenchUnknown> of_bench = {};
 };
 
-/// Numbers of the bench that may be free: "balance.mass", "balance.stiffness", "balance.damping"; empty for others.
+/// A number of the balance by its key, "balance.mass"; empty for any other key.
 std::optional<BenchUnknown> balance_unknown(const std::string& key);
 
 enum class Loss { none, huber, soft_l1, cauchy };
