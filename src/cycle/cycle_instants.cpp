@@ -25,7 +25,7 @@ std::vector<CycleInstant> instants_of(const RecordedCycle<System>& recorded) {
       }
       instants.push_back({waveform_row(system.vehicle, m, inside.dq[time], system.shaft_angle(x, inside.y),
                                        system.shaft_speed(inside.y), system.stroke_angle(m, inside.y), pitch_angle),
-                          0.5 * step.h * detail::gauss_weights[k] * rate / period});
+                          0.5 * step.h * detail::gauss_weights[k] * rate / period, x});
     }
   }
   return instants;

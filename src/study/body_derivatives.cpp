@@ -70,7 +70,7 @@ BodyDerivatives body_derivatives(const Design<double>& design, const Vehicle<dou
   const std::array<double, 3> half = {0.5 * first_moment(design, vehicle), 0.5 * vehicle.wings.s2,
                                       0.5 * vehicle.wings.s3};
   BodyDerivatives mean = BodyDerivatives::Zero();
-  for (const auto& [row, weight] : cycle_instants(cycle)) {
+  for (const auto& [row, weight, phase] : cycle_instants(cycle)) {
     const StripForce<StripJet> c = at_unit_speed(wings, row.angle_of_attack_deg / degrees_per_radian);
     for (const double side : {1.0, -1.0}) {
       mean += weight * side_derivatives(side, row.stroke_angle, row.flapping_velocity, c, vehicle.wings.air_density,

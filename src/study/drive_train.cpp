@@ -5,6 +5,7 @@
 #include <map>
 #include <tuple>
 
+#include "study/lift_peak.hpp"
 #include "study/optimise_problem.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/ensemble/ensemble_member.hpp"
@@ -175,17 +176,10 @@ class Block {
 
   /// Whether no slower sinusoidal stroke lifts as much.
   static bool lift_grows_up_to(const Vehicle<double>& v, double peak) {
-    constexpr int instants = 12, strokes = 12;
-    const auto lift = [&](double velocity) {
-      double sum = 0.0;
-      for (int n = 0; n < instants; ++n) {
-        sum += aero_loads(v.wings, velocity * std::sin(0.5 * pi * (n + 0.5) / instants)).lift;
-      }
-      return sum;
-    };
-    const double highest = lift(peak);
+    constexpr int strokes = 12;
+    const double highest = detail::sinusoidal_lift(v.wings, peak);
     for (int n = 1; n < strokes; ++n) {
-      if (!(lift(peak * n / strokes) < highest)) return false;
+      if (!(detail::sinusoidal_lift(v.wings, peak * n / strokes) < highest)) return false;
     }
     return highest > 0.0;
   }

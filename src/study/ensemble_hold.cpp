@@ -187,7 +187,7 @@ class HeldEnsemble {
     constexpr double margin = 1.02;  // the shape gives the largest lift to within this factor
     const BladeElement<double>& w = members_[s.member].vehicle.wings;
     const double peak = result.metrics[Metric::flapping_velocity_peak], lift = result.metrics[Metric::lift_mean];
-    const double fastest = std::min(stroke_speed_at(w, 0.0), flow_speed_max * w.s2 / w.s3);
+    const double fastest = detail::fastest_stroke(w);
     const double shape = detail::sinusoidal_lift(w, peak);
     double share = std::clamp(fastest / peak, 0.5, 0.9);
     bool found = false;
@@ -227,7 +227,7 @@ class HeldEnsemble {
     }
     constexpr double slowest = 0.2, slower = 0.95;  // than the trial
     const BladeElement<double>& w = members_[s.member].vehicle.wings;
-    const double fastest = std::min({stroke_speed_at(w, 0.0), flow_speed_max * w.s2 / w.s3, slower * peak});
+    const double fastest = std::min(detail::fastest_stroke(w), slower * peak);
     const auto lift_at = [&](int n) { return detail::sinusoidal_lift(w, fastest * n / strokes); };
     int best = strokes;
     for (int n = 1; n < strokes; ++n) {

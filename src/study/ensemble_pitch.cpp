@@ -118,11 +118,7 @@ class EnsembleAtAngles {
         const FrequencySearch found = find_voltage(vehicle, holds_[n], steady, start_up_);
         if (found.outcome != FrequencyOutcome::reached) {
           status = found.status, why = found.outcome;
-          const auto by_angle = [](const DomainEvidence& e) { return e.limit == DomainLimit::angle_of_attack; };
-          const auto& limits = found.finding.limits;
-          const bool too_large =
-              status == FlappingStatus::flapping && std::any_of(limits.begin(), limits.end(), by_angle);
-          return too_large ? below_range : absent;
+          return status == FlappingStatus::flapping && leaves_angle_range(found.finding) ? below_range : absent;
         }
         set_mean_voltage(vehicle, found.voltage);
       }

@@ -21,23 +21,14 @@ struct Quadrature {
   double peak_phase = 0.0, peak = 0.0;          ///< of the largest magnitude
 };
 
-constexpr std::size_t instants_of_step = 5;  ///< of cycle_instants()
-
 double within_turn(double phase) { return phase - two_pi * std::floor(phase / two_pi); }
 
 Quadrature quadrature_of(const CycleRecord& record) {
   Quadrature q;
   const bool turns = drive_of(record.vehicle()).voltage_sets_frequency;
-  const double period = record.period();
-  std::size_t top = 0, k = 0;
-  double before_step = 0.0, of_step = 0.0;  // shares of the period
-  for (const auto& [row, weight] : cycle_instants(record)) {
-    if (k++ % instants_of_step == 0) {
-      before_step += of_step;
-      of_step = 0.0;
-    }
-    of_step += weight;
-    q.phases.push_back(turns ? row.crank_angle : two_pi * (before_step + row.time / period));
+  std::size_t top = 0;
+  for (const auto& [row, weight, phase] : cycle_instants(record)) {
+    q.phases.push_back(phase);
     q.shares.push_back(turns ? weight * row.crank_speed : weight);
     q.torques.push_back(row.motor_torque);
     q.speeds.push_back(turns ? row.crank_speed : 1.0);

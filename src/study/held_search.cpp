@@ -117,7 +117,7 @@ EnsembleSearch search_lift(const Vehicle<double>& v, std::size_t member, double 
   const EvenTurn turn(v);
   const BladeElement<double>& w = v.wings;
   double fastest = HUGE_VAL;
-  if (in_range) fastest = std::min(stroke_speed_at(w, 0.0), flow_speed_max * w.s2 / w.s3) / turn.steepest();
+  if (in_range) fastest = fastest_stroke(w) / turn.steepest();
   double omega = std::min(std::sqrt(2.0 * lift / (w.air_density * w.s2)) / turn.steepest(), fastest);
   EvenTurn::Loads here = turn.at(omega);
   for (int round = 0; round < 8; ++round) {

@@ -4,8 +4,13 @@
 #include <cmath>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/cycle/domain.hpp"
 
 namespace wingbeat::detail {
+
+double fastest_stroke(const BladeElement<double>& w) {
+  return std::min(stroke_speed_at(w, 0.0), flow_speed_max * w.s2 / w.s3);
+}
 
 double sinusoidal_lift(const BladeElement<double>& w, double peak) {
   constexpr int instants = 12;
@@ -39,19 +44,13 @@ bool peak_is_too_low(std::vector<Trial> lifts) {
   if (std::any_of(lifts.begin(), lifts.end(), [](const Trial& t) { return t.gap >= 0.0; })) return false;
   std::partial_sort(lifts.begin(), lifts.begin() + 3, lifts.end(),
                     [](const Trial& x, const Trial& y) { return x.gap > y.gap; });
-  std::sort(lifts.begin(), lifts.begin() + 3,
-            [](const Trial& x, const Trial& y) { return x.ln_voltage < y.ln_voltage; });
-  const Trial &a = lifts[0], &b = lifts[1], &c = lifts[2];
-  const double left = (b.gap - a.gap) / (b.ln_voltage - a.ln_voltage);
-  const double right = (c.gap - b.gap) / (c.ln_voltage - b.ln_voltage);
-  const double bend = (right - left) / (c.ln_voltage - a.ln_voltage);
-  if (!(bend < 0.0)) return false;
-  const double ln_peak = 0.5 * (a.ln_voltage + b.ln_voltage) - 0.5 * left / bend;
-  const double peak = a.gap + (ln_peak - a.ln_voltage) * (left + bend * (ln_peak - b.ln_voltage));
-  const double highest = std::max({a.gap, b.gap, c.gap}), lowest = std::min({a.gap, b.gap, c.gap});
+  const Parabola p({lifts[0], lifts[1], lifts[2]});
+  if (!(p.bend < 0.0)) return false;
+  const double ln_peak = lifts[0].ln_voltage + p.top();
+  const auto [lowest, highest] = std::minmax({lifts[0].ln_voltage, lifts[1].ln_voltage, lifts[2].ln_voltage});
   constexpr double margin = 3e-4;  // of rough trials
-  const bool between = ln_peak > a.ln_voltage && ln_peak < c.ln_voltage;
-  return between && peak + std::max(0.5 * (highest - lowest), margin) < 0.0;
+  const double may_miss = std::max(0.5 * (lifts[0].gap - lifts[2].gap), margin);
+  return ln_peak > lowest && ln_peak < highest && p.value_at_top() + may_miss < 0.0;
 }
 
 double towards_peak(const std::vector<Trial>& lifts, double too_fast) {

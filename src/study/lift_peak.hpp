@@ -33,7 +33,11 @@ struct Parabola {
     return slope > 0.0 ? -2.0 * value / (slope + root) : 0.5 * (root - slope) / bend;
   }
   double top() const { return -0.5 * slope / bend; }
+  double value_at_top() const { return value + 0.5 * slope * top(); }
 };
+
+/// The fastest stroke for which the coefficients hold, by the shape of the wings [rad/s].
+double fastest_stroke(const BladeElement<double>& wings);
 
 /// Mean lift of a sinusoidal stroke of that peak velocity [rad/s].
 double sinusoidal_lift(const BladeElement<double>& wings, double peak);

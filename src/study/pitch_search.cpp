@@ -67,6 +67,11 @@ PitchSearch find_pitch_coefficient(double given, double wanted, double tolerance
   }
 }
 
+bool leaves_angle_range(const SearchFinding& finding) {
+  return std::any_of(finding.limits.begin(), finding.limits.end(),
+                     [](const DomainEvidence& e) { return e.limit == DomainLimit::angle_of_attack; });
+}
+
 std::string no_pitch_coefficient(double angle) {
   return format("no C_alpha leads to %.4g deg at mid-stroke", degrees_per_radian * angle);
 }
@@ -91,9 +96,7 @@ RunResult run_at_angle_of_attack(Design<double> design, RunOptions options) {
     if (flaps_as_asked(r)) return r.metrics[Metric::angle_of_attack_min];
     // Where the angle falls below the coefficients' range before what else is asked for is reached, C_alpha is too
     // large.
-    const bool flaps = r.status == FlappingStatus::flapping && r.search;
-    const auto by_angle = [](const DomainEvidence& e) { return e.limit == DomainLimit::angle_of_attack; };
-    if (!flaps || std::none_of(r.search->finding.limits.begin(), r.search->finding.limits.end(), by_angle)) {
+    if (r.status != FlappingStatus::flapping || !r.search || !leaves_angle_range(r.search->finding)) {
       without = std::move(r);
       return absent;
     }

@@ -4,6 +4,7 @@
 #include <functional>
 #include <string>
 
+#include "wingbeat/study/frequency_search.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat::detail {
@@ -29,6 +30,9 @@ inline constexpr double below_range = -1.0;
 /// C_alpha is too large, and NaN where there is none.
 PitchSearch find_pitch_coefficient(double given, double wanted, double tolerance,
                                    const std::function<double(double)>& angle_with);
+
+/// Whether a search for a voltage ended where the angle of attack falls below the coefficients' range.
+bool leaves_angle_range(const SearchFinding& finding);
 
 /// What is said where no C_alpha leads to an angle of attack [rad].
 std::string no_pitch_coefficient(double angle);

@@ -49,7 +49,9 @@ class DifferencedResiduals : public ceres::CostFunction {
       moved[k] = below;
       if (!set(moved.data(), low.data())) return false;
       moved[k] = scaled[0][k];
-      for (std::size_t n_ = 0; n_ < n; ++n_) jacobians[0][n_ * count + k] = (high[n_] - low[n_]) / (above - below);
+      for (std::size_t row = 0; row < n; ++row) {
+        jacobians[0][row * count + k] = (high[row] - low[row]) / (above - below);
+      }
     }
     return true;
   }

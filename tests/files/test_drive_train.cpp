@@ -84,7 +84,8 @@ TEST(GearboxList, OfTheMotorGearboxDatabase) {
   const auto motors = detail::parse_motor_catalogue(
       "key,manufacturer,ID,type,V,k_t,R,L,mass,inertia,omega_nl,I_nl,I_nom,max_int_torque,max_int_speed,max_cont_speed,"
       "max_cont_power,coulomb_friction,viscous_friction,Rth1,Rth2\n"
-      "FH_0816,Faulhaber,0816K003SR,DC,3,0.00211,5.4,53e-6,0.0045,5.1e-9,1388,0.016,0.37,inf,inf,1500,inf,3.4e-5,nan,20,48\n",
+      "FH_0816,Faulhaber,0816K003SR,DC,3,0.00211,5.4,53e-6,0.0045,5.1e-9,1388,0.016,0.37,inf,inf,1500,inf,3.4e-5,nan,"
+      "20,48\n",
       "motors.csv", 1.0, 0.002, reference_design());
   ASSERT_EQ(motors.size(), 1U);
   EXPECT_EQ(motors[0].refused, "");
@@ -111,7 +112,8 @@ TEST(GearboxList, WhatCannotBeTriedSaysWhy) {
 
 TEST(BatteryList, NamesAndUnitsInUse) {
   const auto list = batteries(
-      "Name,Cells,Capacity (mAh),Cell resistance [mohm],Weight [g],C-rating\n2S 150,2,150,200,7.4,20\nhalf,1.5,150,200,1,5\n");
+      "Name,Cells,Capacity (mAh),Cell resistance [mohm],Weight [g],C-rating\n2S 150,2,150,200,7.4,20\n"
+      "half,1.5,150,200,1,5\n");
   ASSERT_EQ(list.size(), 2U);
   EXPECT_EQ(list[0].refused, "");
   EXPECT_EQ(list[0].cells, 2.0);

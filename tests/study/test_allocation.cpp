@@ -88,7 +88,7 @@ TEST(WingLoads, RowsOfACycleAddUpToItsMeans) {
   // Without added mass nothing is moved at once, so that instants between events give the whole lift, stops or not.
   const SteadyFlapping orbit = find_steady_flapping(resolve(with_stops()), {.tolerance = 1e-10, .stability = false});
   double lift = 0.0, weight = 0.0, power = 0.0;
-  for (const auto& [row, share] : cycle_instants(orbit.record)) {
+  for (const auto& [row, share, phase] : cycle_instants(orbit.record)) {
     lift += share * row.lift;
     power += share * row.power_electrical;
     weight += share;

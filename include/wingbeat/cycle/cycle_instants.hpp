@@ -11,6 +11,7 @@ namespace wingbeat {
 struct CycleInstant {
   WaveformRow row;  ///< its time is since the start of its step
   double weight;    ///< share of the period; they add up to 1
+  double phase;     ///< crank angle, or phase of the supply [rad]
 };
 
 /// Five instants of each step. What impacts add to a mean at once is not in them.
