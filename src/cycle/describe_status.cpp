@@ -210,6 +210,11 @@ std::string describe_doubt(const StatusEvidence& e) {
     case StatusEvidence::Kind::no_steady_temperature:
       return format("it flaps, but no steady winding temperature was found, at last near %.4g degC",
                     e.winding_temperature);
+    case StatusEvidence::Kind::no_steady_air:
+      return format(
+          "it flaps in air at rest, but no steady state with the air that it sets in motion was found, at "
+          "last near an induced velocity of %.4g m/s",
+          e.induced_velocity);
     default: break;
   }
   const std::string why = describe_giving_up(e);

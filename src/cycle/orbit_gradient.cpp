@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cycle/repeat_recorded.hpp"
+#include "wingbeat/cycle/air_equilibrium.hpp"
 #include "wingbeat/solve/linear.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
@@ -36,38 +37,81 @@ OrbitGradient repeat(const SteadyFlapping& orbit, const Vehicle<J>& vehicle, con
                [&](const auto& recorded) { return detail::repeat_recorded(orbit, recorded, vehicle, given, options); });
 }
 
-/// Lets the motor's temperatures follow: they are the fixed point T = G(T, p), so dT/dp = (I - dG/dT)^-1 dG/dp, and
-/// what they change comes on top of the derivatives `g` at given temperatures.
-void follow_temperatures(const SteadyFlapping& orbit, Vehicle<J> constant, const GradientVehicle& given,
-                         const GradientOptions& options, OrbitGradient& g) {
-  for_each_number(constant, [](J& x) { x.v.setZero(); });
-  constexpr int w = gradient_first_slot, c = gradient_first_slot + 1;
-  const Vehicle<J> seeded = with_motor_at(
-      constant, {gradient_seed(orbit.temperatures.winding, 0), gradient_seed(orbit.temperatures.casing, 1)});
-  GradientVehicle beside = given;
-  for (J* x : {&beside.mass, &beside.bench_torque_constant}) x->v.setZero();
-  OrbitGradient by_temperature = repeat(orbit, seeded, beside, options);
-  g.regular = g.regular && by_temperature.regular;
+/// A vehicle and what stands beside it without derivatives, to be differentiated by something else.
+Vehicle<J> as_constants(Vehicle<J> vehicle) {
+  for_each_number(vehicle, [](J& x) { x.v.setZero(); });
+  return vehicle;
+}
+GradientVehicle as_constants(GradientVehicle given) {
+  for (J* x : {&given.mass, &given.bench_torque_constant}) x->v.setZero();
+  return given;
+}
 
-  const J T_w = by_temperature.metrics[Metric::winding_temperature];
-  const J T_c = by_temperature.metrics[Metric::case_temperature];
-  const J G_w = g.metrics[Metric::winding_temperature], G_c = g.metrics[Metric::case_temperature];
+/// Adds to the derivatives `g` at two given numbers what they change, which are the fixed point x = G(x, p):
+/// dx/dp = (I - dG/dx)^-1 dG/dp. `by_both` holds the derivatives by them in the first two slots of parameters, G is
+/// read from either by `settled`.
+template <class Settled>
+void follow(OrbitGradient& g, OrbitGradient& by_both, const Settled& settled) {
+  g.regular = g.regular && by_both.regular;
+  constexpr int first = gradient_first_slot, second = gradient_first_slot + 1;
+  const std::array<J, 2> G = settled(g), slope = settled(by_both);
   std::array<std::array<double, 2>, slots> change{};
   for (int k = gradient_voltage_slot; k < slots; ++k) {
-    double matrix[4] = {1.0 - T_w.v[w], -T_w.v[c], -T_c.v[w], 1.0 - T_c.v[c]};
-    double dT[2] = {G_w.v[k], G_c.v[k]};
-    if (!solver::solve_linear(2, matrix, dT)) g.regular = false;
-    change[std::size_t(k)] = {dT[0], dT[1]};
+    double matrix[4] = {1.0 - slope[0].v[first], -slope[0].v[second], -slope[1].v[first], 1.0 - slope[1].v[second]};
+    double dx[2] = {G[0].v[k], G[1].v[k]};
+    if (!solver::solve_linear(2, matrix, dx)) g.regular = false;
+    change[std::size_t(k)] = {dx[0], dx[1]};
   }
   std::vector<J> slopes;
-  for_each_jet(by_temperature, [&](const J& x) { slopes.push_back(x); });
+  for_each_jet(by_both, [&](const J& x) { slopes.push_back(x); });
   std::size_t n = 0;
   for_each_jet(g, [&](J& x) {
-    const J& slope = slopes[n++];
+    const J& by = slopes[n++];
     for (int k = gradient_voltage_slot; k < slots; ++k) {
-      x.v[k] += slope.v[w] * change[std::size_t(k)][0] + slope.v[c] * change[std::size_t(k)][1];
+      x.v[k] += by.v[first] * change[std::size_t(k)][0] + by.v[second] * change[std::size_t(k)][1];
     }
   });
+}
+
+/// The derivatives with the motor's temperatures following.
+OrbitGradient repeat_warm(const SteadyFlapping& orbit, const Vehicle<J>& vehicle, const GradientVehicle& given,
+                          const GradientOptions& options) {
+  if (!heats_up(vehicle.thermal)) return repeat(orbit, vehicle, given, options);
+  const MotorTemperatures<J> temperatures{J(orbit.temperatures.winding), J(orbit.temperatures.casing)};
+  OrbitGradient g = repeat(orbit, with_motor_at(vehicle, temperatures), given, options);
+  // Under thermal runaway the temperatures are the last that were looked at, and no fixed point.
+  if (orbit.temperatures.winding >= copper_melting_point) {
+    g.regular = false;
+    return g;
+  }
+  const Vehicle<J> seeded = with_motor_at(as_constants(vehicle), {gradient_seed(orbit.temperatures.winding, 0),
+                                                                  gradient_seed(orbit.temperatures.casing, 1)});
+  OrbitGradient by_temperature = repeat(orbit, seeded, as_constants(given), options);
+  follow(g, by_temperature, [](const OrbitGradient& g_at) {
+    return std::array<J, 2>{g_at.metrics[Metric::winding_temperature], g_at.metrics[Metric::case_temperature]};
+  });
+  return g;
+}
+
+/// The derivatives with the air following, too, that settles around the orbit.
+OrbitGradient repeat_settled(const SteadyFlapping& orbit, Vehicle<J> vehicle, const GradientVehicle& given,
+                             const GradientOptions& options) {
+  const Vehicle<double>& found = orbit.record.vehicle();
+  if (!settles_air(found)) return repeat_warm(orbit, vehicle, given, options);
+  const bool has_wake = has_induced_velocity(found.wings.wake);
+  const bool reverses = claps(found.wings.clap) && !drive_of(found).stroke_is_fixed;
+  if (has_wake) vehicle.wings.wake.velocity = J(found.wings.wake.velocity);
+  if (reverses) vehicle.wings.clap.reversal = J(found.wings.clap.reversal);
+  OrbitGradient g = repeat_warm(orbit, vehicle, given, options);
+  Vehicle<J> seeded = as_constants(vehicle);
+  if (has_wake) seeded.wings.wake.velocity = gradient_seed(found.wings.wake.velocity, 0);
+  if (reverses) seeded.wings.clap.reversal = gradient_seed(found.wings.clap.reversal, 1);
+  OrbitGradient by_air = repeat_warm(orbit, seeded, as_constants(given), options);
+  follow(g, by_air, [&](const OrbitGradient& g_at) {
+    return std::array<J, 2>{has_wake ? g_at.metrics[Metric::induced_velocity] : J(0.0),
+                            reverses ? g_at.metrics[Metric::stroke_angle_max] : J(0.0)};
+  });
+  return g;
 }
 
 }  // namespace
@@ -89,24 +133,18 @@ OrbitGradient orbit_gradient(const SteadyFlapping& orbit, const GradientVehicle&
   const bool voltage_varies = drive_of(vehicle).voltage_sets_frequency;
   if (voltage_varies) vehicle.voltage.v[gradient_voltage_slot] = 1.0;
   if (by_duty) vehicle.source_resistance.v[gradient_voltage_slot] = 2.0 * vehicle.source_resistance.a / voltage;
-  const MotorTemperatures<J> temperatures{J(orbit.temperatures.winding), J(orbit.temperatures.casing)};
-  const bool warm = heats_up(vehicle.thermal);
-  OrbitGradient g = repeat(orbit, warm ? with_motor_at(vehicle, temperatures) : vehicle, given, options);
-  // Under thermal runaway the temperatures are the last that were looked at, and no fixed point.
-  const bool runs_away = warm && orbit.temperatures.winding >= copper_melting_point;
-  if (runs_away) g.regular = false;
-  else if (warm) follow_temperatures(orbit, vehicle, given, options, g);
+  OrbitGradient g = repeat_settled(orbit, vehicle, given, options);
 
   if (options.held != Held::voltage && voltage_varies) {
     const J held = g.metrics[metric_of(options.held)];
     if (!(std::abs(held.v[gradient_voltage_slot]) > 0.0)) g.regular = false;
-    const auto follow = [&](J& x) {
+    const auto hold = [&](J& x) {
       for (int k = gradient_first_slot; k < slots; ++k) {
         x.v[k] -= x.v[gradient_voltage_slot] * held.v[k] / held.v[gradient_voltage_slot];
       }
       x.v[gradient_voltage_slot] = 0.0;
     };
-    for_each_jet(g, follow);
+    for_each_jet(g, hold);
   }
   detail::make_absent(g.metrics[Metric::floquet_multiplier_max]);
   if (!options.peaks) {

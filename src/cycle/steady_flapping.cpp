@@ -1,6 +1,7 @@
 #include "wingbeat/cycle/steady_flapping.hpp"
 
 #include "wingbeat/core/cancellation.hpp"
+#include "wingbeat/cycle/air_equilibrium.hpp"
 #include "wingbeat/cycle/orbit_search.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/vehicle/motion.hpp"
@@ -88,10 +89,42 @@ SteadyFlapping detail::find_flapping_as_it_is(const Vehicle<double>& vehicle, co
   return find_flapping_among(vehicle, options, start_up, alone);
 }
 
+namespace {
+
+/// `find` in the air that settles around what it finds.
+template <class Find>
+SteadyFlapping find_in_its_air(const Vehicle<double>& vehicle, const SteadyOptions& options, const Find& find) {
+  if (!settles_air(vehicle)) return find(vehicle, options);
+  SteadyOptions within = options;
+  within.tolerance = tolerance_within_equilibrium(options.tolerance);
+  AirEquilibrium equilibrium(vehicle, options.tolerance);
+  SteadyFlapping found;
+  do {
+    found = find(in_air(vehicle, equilibrium.at()), within);
+  } while (!equilibrium.advance(found.status == FlappingStatus::flapping, found.metrics));
+  if (conclude(equilibrium, found.status, found.evidence)) return found;
+  SteadyFlapping none;
+  none.metrics.values.fill(absent);
+  none.status = found.status;
+  none.evidence = found.evidence;
+  return none;
+}
+
+}  // namespace
+
+SteadyFlapping detail::find_flapping_at_given_temperature(const Vehicle<double>& vehicle, const SteadyOptions& options,
+                                                          const StartUp& start_up) {
+  return find_in_its_air(vehicle, options, [&](const Vehicle<double>& v, const SteadyOptions& within) {
+    return find_flapping_as_it_is(v, within, start_up);
+  });
+}
+
 SteadyFlapping find_steady_flapping(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                     const StartUp& start_up) {
-  return heats_up(vehicle.thermal) ? detail::find_warm_flapping(vehicle, options, start_up)
-                                   : detail::find_flapping_as_it_is(vehicle, options, start_up);
+  if (!heats_up(vehicle.thermal)) return detail::find_flapping_at_given_temperature(vehicle, options, start_up);
+  return find_in_its_air(vehicle, options, [&](const Vehicle<double>& v, const SteadyOptions& within) {
+    return detail::find_warm_flapping(v, within, start_up);
+  });
 }
 
 }  // namespace wingbeat

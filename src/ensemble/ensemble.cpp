@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "ensemble/ensemble_run.hpp"
 #include "ensemble/plan.hpp"
 #include "wingbeat/core/cancellation.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
@@ -41,7 +42,9 @@ PackSolver solver_for(InstructionSet isa) {
 
 /// Whether the batched solver knows all of a vehicle.
 bool suits_packs(const Vehicle<double>& v) {
-  if (pitches(v) || is_of_further_kind(v)) return false;
+  if (pitches(v) || is_of_further_kind(v) || claps(v.wings.clap)) return false;
+  // Strips in the wake meet a table's start or a stop at an angle of attack each.
+  if (has_wake(v.wings) && (v.wings.coefficients.table || has_pitch_stop(v.wings))) return false;
   if (v.load_torque != 0.0 || v.voltage_offset != 0.0 || v.electronics.efficiency != 1.0) return false;
   if (v.transmission.type != TransmissionType::direct) {
     // Of two kinds of kinks beside those of the rod force lanes know one at a time.
@@ -50,7 +53,7 @@ bool suits_packs(const Vehicle<double>& v) {
   }
   // Where constant friction holds a shaft that swings, the equations jump; where coefficients have kinks, their slopes
   // jump.
-  return !jumps_at_rest(v) && !v.wings.coefficients.table && !has_pitch_stop(v.wings);
+  return !jumps_at_rest(v) && !v.wings.coefficients.table && !has_pitch_stop(v.wings) && !acts_by_strips(v.wings);
 }
 
 /// Whether a crank can jam, or lock where the angles that lanes look at do not show it: statics tell it of any angle.
@@ -64,12 +67,6 @@ bool needs_start_up(const Vehicle<double>& v) {
          statics.lever_min <= lever_margin * typical_lever(v.transmission) || (!locks_seen && statics.can_lock());
 }
 
-void keep_wanted(const MetricSet& wanted, Metrics<double>& metrics) {
-  for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
-    if (!wanted[m]) metrics.values[m] = absent;
-  }
-}
-
 /// Of the rates, beside those at sign changes of the rod force. Linkages' shorter waves ask for as much as few do.
 enum class Kinks { none, few, knots };
 
@@ -79,7 +76,7 @@ struct PackKind {
   TransmissionType transmission;
   Kinks kinks;
   bool gear_loss, load_free_friction, pitch_stop;
-  bool added_mass, virtual_work, springs;
+  bool added_mass, virtual_work, springs, strips;
   PackCurrent current;
 
   auto operator<=>(const PackKind&) const = default;
@@ -188,6 +185,7 @@ class EnsembleRun {
             .added_mass = v.wings.added_inertia > 0.0,
             .virtual_work = v.transmission.slider_crank.formulation == Formulation::virtual_work,
             .springs = v.spring.stiffness > 0.0,
+            .strips = acts_by_strips(v.wings),
             .current = current};
   }
 
@@ -383,49 +381,13 @@ class EnsembleRun {
   std::vector<char> rotates_;               ///< from rest, as lanes have shown in time
 };
 
-/// Members whose motors heat up: all of them are solved at a temperature each, again and again until it settles.
-void solve_warm(std::span<const EnsembleMember> members, const std::vector<std::size_t>& which,
-                const EnsembleOptions& options, const StartUp& start_up, std::span<EnsembleOutcome> outcomes) {
-  EnsembleOptions within = options;
-  within.tolerance = tolerance_within_equilibrium(options.tolerance);
-  within.metrics.set(std::size_t(Metric::winding_temperature)).set(std::size_t(Metric::case_temperature));
-  struct Search {
-    std::size_t member;
-    ThermalEquilibrium equilibrium;
-  };
-  std::vector<Search> active;
-  active.reserve(which.size());
-  for (const std::size_t n : which) {
-    active.push_back({n, ThermalEquilibrium(members[n].vehicle.thermal, options.tolerance)});
-  }
-  std::vector<EnsembleMember> trials;
-  std::vector<EnsembleOutcome> results;
-  while (!active.empty()) {
-    trials.clear();
-    for (const auto& [n, equilibrium] : active) {
-      trials.push_back({with_motor_at(members[n].vehicle, equilibrium.at()), members[n].reporting});
-    }
-    results.resize(trials.size());
-    EnsembleRun(trials, within, start_up, results).solve([](const Vehicle<double>&) { return true; });
-    std::size_t left = 0;
-    for (std::size_t k = 0; k < active.size(); ++k) {
-      auto& [n, equilibrium] = active[k];
-      if (equilibrium.advance(results[k].status == FlappingStatus::flapping, results[k].metrics)) {
-        outcomes[n] = results[k];
-        if (equilibrium.outcome() == ThermalOutcome::does_not_settle) {
-          outcomes[n] = {FlappingStatus::undecided, results[k].scalar, absent, {}};
-          outcomes[n].metrics.values.fill(absent);
-        }
-        keep_wanted(options.metrics, outcomes[n].metrics);
-      } else {
-        active[left++] = active[k];
-      }
-    }
-    active.erase(active.begin() + std::ptrdiff_t(left), active.end());
+}  // namespace
+
+void keep_wanted(const MetricSet& wanted, Metrics<double>& metrics) {
+  for (std::size_t m = 0; m < std::size_t(metric_count); ++m) {
+    if (!wanted[m]) metrics.values[m] = absent;
   }
 }
-
-}  // namespace
 
 bool is_available(InstructionSet isa) {
   switch (isa) {
@@ -449,19 +411,9 @@ InstructionSet best_instruction_set() {
   return best;
 }
 
-void solve_ensemble(std::span<const EnsembleMember> members, const EnsembleOptions& options, const StartUp& start_up,
-                    std::span<EnsembleOutcome> outcomes) {
-  require(options.tolerance >= 1e-12 && options.tolerance <= 1e-2, "tolerance", "must lie between 1e-12 and 1e-2", "1",
-          options.tolerance);
-  if (!is_available(options.isa)) throw ParameterError("isa", "this processor lacks the instruction set");
-  std::vector<std::size_t> warm;
-  for (std::size_t n = 0; n < members.size(); ++n) {
-    if (heats_up(members[n].vehicle.thermal)) warm.push_back(n);
-  }
-  EnsembleRun(members, options, start_up, outcomes).solve([](const Vehicle<double>& v) {
-    return !heats_up(v.thermal);
-  });
-  solve_warm(members, warm, options, start_up, outcomes);
+void run_ensemble(std::span<const EnsembleMember> members, const EnsembleOptions& options, const StartUp& start_up,
+                  std::span<EnsembleOutcome> outcomes, bool (*takes)(const Vehicle<double>&)) {
+  EnsembleRun(members, options, start_up, outcomes).solve(takes);
 }
 
 }  // namespace wingbeat

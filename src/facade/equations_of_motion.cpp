@@ -1,6 +1,7 @@
 #include <cmath>
 #include <memory>
 
+#include "wingbeat/cycle/air_equilibrium.hpp"
 #include "wingbeat/vehicle/drive.hpp"
 #include "wingbeat/vehicle/dynamics.hpp"
 #include "wingbeat/wingbeat.hpp"
@@ -10,7 +11,7 @@ namespace wingbeat {
 EquationsOfMotion::EquationsOfMotion(const Design<double>& design, Condition condition)
     : supply_(design.supply), direct_(drive_of(design).alternating) {
   validate(design);
-  vehicle_ = std::make_shared<const Vehicle<double>>(switched_on(resolve(design, condition)));
+  vehicle_ = std::make_shared<const Vehicle<double>>(in_settled_air(switched_on(resolve(design, condition))));
   inductive_ = has_current_state(*vehicle_);
   state_count_ = UnknownIndices(*vehicle_).count;
 }

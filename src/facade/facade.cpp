@@ -8,6 +8,7 @@
 #include "files/design_settings.hpp"
 #include "files/read_number.hpp"
 #include "files/study_sections.hpp"
+#include "wingbeat/cycle/air_equilibrium.hpp"
 #include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/units.hpp"
@@ -121,12 +122,12 @@ TransientResult simulate(const Design<double>& design, TransientOptions options,
   validate(design);
   options.reporting = reporting_of(design);
   if (!drive_of(design).alternating && !options.supply) options.supply = design.supply;
-  return simulate_start_up(switched_on(resolve(design, condition)), options);
+  return simulate_start_up(in_settled_air(switched_on(resolve(design, condition))), options);
 }
 
 Simulation simulation(const Design<double>& design, const SimulationOptions& options, Condition condition) {
   validate(design);
-  return Simulation(switched_on(resolve(design, condition)), design.supply, options);
+  return Simulation(in_settled_air(switched_on(resolve(design, condition))), design.supply, options);
 }
 
 DesignPoint gradient(const Design<double>& design, std::span<const std::string> keys,

@@ -22,6 +22,7 @@
 #include "wingbeat/files/file_record.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/parts/coefficient_sets.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
@@ -37,6 +38,8 @@ std::string message_text(const std::string& file, int line, int column, const st
 }
 
 constexpr std::string_view wave_coefficients[] = {"aerodynamics.coefficients.lift", "aerodynamics.coefficients.drag"};
+
+constexpr std::string_view centre_of_pressure_key = "aerodynamics.centre_of_pressure";
 
 constexpr CsvColumn chord_columns[] = {{"distance", "m"}, {"chord", "m"}};
 constexpr CsvColumn stroke_columns[] = {{"crank_angle", "rad"}, {"stroke_angle", "rad"}};
@@ -73,6 +76,11 @@ class Reader {
     d.pitch.rotational_lift = rotation.lift;
     d.pitch.damping_coefficient = rotation.damping;
     attempt([&] { read_flag("pitch.rotational_lift", d.pitch.rotational_lift); });
+    attempt([&] {
+      if (document_.find(centre_of_pressure_key)) {
+        d.pitch.centre_of_pressure = choice<CentreOfPressure>(centre_of_pressure_key);
+      }
+    });
     attempt([&] { read_flag("wing.planform.scale_inertia", d.wing.scale_inertia); });
     attempt([&] { read_flag("electronics.regeneration", d.electronics.regenerates); });
     attempt([&] {
@@ -84,7 +92,8 @@ class Reader {
     });
     for (const auto& [section, key] :
          {std::pair("pitch", pitch_key::stiffness), std::pair("wing.torsion", torsion_key::stiffness),
-          std::pair("piezo", piezo_key::force_per_volt), std::pair("electronics", electronics_key::efficiency)}) {
+          std::pair("piezo", piezo_key::force_per_volt), std::pair("electronics", electronics_key::efficiency),
+          std::pair("aerodynamics.clap_and_fling", clap_and_fling_key::amplitude)}) {
       attempt([&, s = section, k = key] {
         if (document_.has_section(s) && !document_.find(k.path)) missing(k.path, quantity_example(k.unit));
       });
@@ -316,7 +325,7 @@ class Reader {
 
   void read_coefficients(AerodynamicsDesign<double>& a) const {
     const std::string path = "aerodynamics.coefficients", table_path = path + ".table";
-    const char* expected = "\"translational-2022\", \"normal-force-robofly\" or a table of coefficients";
+    const std::string expected = coefficient_set_names() + " or a table of coefficients";
     a.coefficients = translational_2022();
     a.coefficients_name = "translational-2022";
     if (const Value* name = document_.find(path)) {
@@ -349,7 +358,7 @@ class Reader {
     }
     // The numbers themselves come with the others.
     for (const auto& key : parameter_table<double>()) {
-      if (key.set && key.path.starts_with(path + ".") && !document_.find(key.path)) {
+      if (key.set && key.path.starts_with(path + ".") && key.fallback == "required" && !document_.find(key.path)) {
         missing(key.path, quantity_example(key.unit));
       }
     }

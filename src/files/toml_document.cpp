@@ -17,6 +17,7 @@
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/toml_text.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/parts/coefficient_sets.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
@@ -245,13 +246,15 @@ void erase_below(Map& map, std::string_view path, const Condition& condition) {
 void spell_out_coefficients(Document& document, std::string_view overridden) {
   const std::string path = "aerodynamics.coefficients";
   const Value* name = document.find(path);
-  const bool single = at_or_below(overridden, path + ".lift") || at_or_below(overridden, path + ".drag");
+  const bool single = at_or_below(overridden, path + ".lift") || at_or_below(overridden, path + ".drag") ||
+                      overridden == path + ".tangential";
   const auto set = !name                                ? translational_2022()
                    : name->kind == TomlNode::Kind::text ? named_coefficients(name->text)
                                                         : std::nullopt;
   if (!single || document.has_section(path) || !set) return;
   Design<double> named{};
   named.aerodynamics.coefficients = *set;
+  named.aerodynamics.coefficients_name = "custom";
   const Origin origin = document.locate(path);
   document.values.erase(path);
   document.sections.insert_or_assign(path, origin);

@@ -88,6 +88,11 @@ FmuContent fmu_content(const Design<double>& design, const FmuOptions& options) 
     throw ParameterError(has_friction(vehicle.pitch.hinge) ? "pitch.friction" : "supply.offset",
                          "an FMU does not know it yet: `wingbeat run` and Simulation do");
   }
+  const AerodynamicsDesign<double>& air = design.aerodynamics;
+  if (air.induced_velocity || (air.clap.amplitude && !drive_of(design).stroke_is_fixed)) {
+    throw ParameterError(air.induced_velocity ? induced_velocity_key::share.path : clap_and_fling_key::amplitude.path,
+                         "an FMU does not know it: it follows from a cycle's mean, and an FMU has no cycles");
+  }
   FmuContent content;
   content.resource = resource_of(design);
   content.description = model_description(design, token_of(content.resource), options);

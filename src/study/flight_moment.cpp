@@ -4,8 +4,8 @@
 #include <cmath>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/cycle/air_equilibrium.hpp"
 #include "wingbeat/cycle/metrics.hpp"
-#include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/study/hold.hpp"
 
 namespace wingbeat::detail {
@@ -57,7 +57,7 @@ FlightMoment FlightMoments::at(double voltage, const Temperatures& temperatures,
   } else {
     ++evaluations_;
     if (!bridged_) vehicle_.voltage = duty_ * voltage;
-    found = temperatures ? find_flapping_as_it_is(with_motor_at(vehicle_, *temperatures), steady_, start_up)
+    found = temperatures ? find_flapping_at_given_temperature(with_motor_at(vehicle_, *temperatures), steady_, start_up)
                          : find_steady_flapping(vehicle_, steady_, start_up);
     moment.voltage = vehicle_.voltage;
     moment.duty = duty_;

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "wingbeat/cycle/thermal_equilibrium.hpp"
+#include "wingbeat/cycle/air_equilibrium.hpp"
 #include "wingbeat/study/frequency_search.hpp"
 
 namespace wingbeat::detail {
@@ -12,7 +12,7 @@ SteadyFlapping HoverThrottle::solve(const Vehicle<double>& vehicle,
                                     const std::optional<MotorTemperatures<double>>& temperatures,
                                     const StartUp& start_up) {
   ++evaluations_;
-  return temperatures ? find_flapping_as_it_is(with_motor_at(vehicle, *temperatures), options_, start_up)
+  return temperatures ? find_flapping_at_given_temperature(with_motor_at(vehicle, *temperatures), options_, start_up)
                       : find_steady_flapping(vehicle, options_, start_up);
 }
 

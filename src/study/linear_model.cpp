@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "wingbeat/cycle/air_equilibrium.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
@@ -126,8 +127,9 @@ Linearisation linearise(const Design<double>& design, const RunOptions& options,
   if (search && search->outcome != FrequencyOutcome::reached) return found;
   if (found.operating_point.status != FlappingStatus::flapping) return found;
   const Design<double>& operated = found.operating_point.design;
-  const Vehicle<double> vehicle = resolve(operated, options.condition);
+  Vehicle<double> vehicle = resolve(operated, options.condition);
   found.orbit = find_steady_flapping(vehicle, {1e-10, true, reporting_of(operated)}, start_up_in_time());
+  if (found.orbit.status == FlappingStatus::flapping) vehicle = in_air(vehicle, air_of(found.orbit.metrics));
   const CycleMap map = cycle_map(found.orbit, vehicle, operated.supply);
   if (!map.states.empty()) found.model = linear_model_of(map, cycles);
   return found;

@@ -9,6 +9,7 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/root.hpp"
+#include "wingbeat/parts/coefficient_sets.hpp"
 
 namespace wingbeat {
 namespace {
@@ -83,10 +84,10 @@ PrescribedWings prescribed_wings(const Planform<double>& planform, double count,
   PitchingWings<double>& p = wings.pitching;
   p.moments = pitch_chord_moments(planform, count);
   const RotationTerms terms = rotation_with(coefficients);
-  p.rotational_coefficient = rotation && terms.lift ? leading_edge_rotational_coefficient : 0.0;
+  p.rotational_coefficient = rotation && terms.lift ? rotational_coefficient_of(p.axis) : 0.0;
   p.damping_coefficient = rotation ? terms.damping : 0.0;
   if (coefficients == normal_force_set) p.normal_force = NormalForce::normal_force;
-  if (added_mass) p.air = pitch_added_mass(air_density, p.moments);
+  if (added_mass) p.air = pitch_added_mass(air_density, p.moments, p.axis);
   return wings;
 }
 

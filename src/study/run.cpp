@@ -5,6 +5,7 @@
 
 #include "study/pitch_search.hpp"
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/cycle/air_equilibrium.hpp"
 #include "wingbeat/cycle/thermal_equilibrium.hpp"
 #include "wingbeat/study/endurance.hpp"
 #include "wingbeat/study/hold.hpp"
@@ -72,7 +73,8 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
   if (options.waveform_rows > 1 && !found.record.empty()) {
     result.cycle = found.record.waveform(options.waveform_rows);
   } else if (options.waveform_rows > 1 && found.simulated) {
-    const Vehicle<double> warm = heats_up(vehicle.thermal) ? with_motor_at(vehicle, found.temperatures) : vehicle;
+    Vehicle<double> warm = heats_up(vehicle.thermal) ? with_motor_at(vehicle, found.temperatures) : vehicle;
+    warm = in_air(warm, air_of(found.metrics));
     TransientOptions transient;
     transient.tolerance = std::max(options.tolerance, transient_tightest);
     transient.cycle_rows = options.waveform_rows;
@@ -102,14 +104,39 @@ TransientResult simulate_warm(Vehicle<double>& vehicle, TransientOptions transie
   return found;
 }
 
+/// Simulates start-ups with the motor as warm as the settled cycle makes it, in the air that it leads to. `vehicle` is
+/// then that one.
+TransientResult simulate_settled(Vehicle<double>& vehicle, TransientOptions transient) {
+  const auto simulate = [](Vehicle<double>& v, const TransientOptions& options) {
+    return heats_up(v.thermal) ? simulate_warm(v, options) : simulate_start_up(v, options);
+  };
+  if (!settles_air(vehicle)) return simulate(vehicle, transient);
+  const Vehicle<double> stated = vehicle;
+  AirEquilibrium equilibrium(stated, transient.tolerance);
+  transient.tolerance = std::max(tolerance_within_equilibrium(transient.tolerance), transient_tightest);
+  TransientResult found;
+  bool flaps = false;
+  Metrics<double> nothing;
+  nothing.values.fill(absent);
+  do {
+    vehicle = in_air(stated, equilibrium.at());
+    found = simulate(vehicle, transient);
+    flaps = found.status == FlappingStatus::flapping && found.metrics;
+  } while (!equilibrium.advance(flaps, flaps ? *found.metrics : nothing));
+  if (!conclude(equilibrium, found.status, found.evidence)) {
+    found.metrics.reset();
+    found.settled = false;
+  }
+  return found;
+}
+
 void run_transient(Vehicle<double> vehicle, const RunOptions& options, RunResult& result) {
   TransientOptions transient;
   transient.tolerance = std::max(options.tolerance, transient_tightest);
   transient.reporting = reporting_of(result.design);
   if (!drive_of(vehicle).alternating) transient.supply = result.design.supply;
   transient.cycle_rows = options.waveform_rows > 1 ? options.waveform_rows : 0;
-  result.start_up =
-      heats_up(vehicle.thermal) ? simulate_warm(vehicle, transient) : simulate_start_up(vehicle, transient);
+  result.start_up = simulate_settled(vehicle, transient);
   const TransientResult& found = *result.start_up;
   result.status = found.status;
   result.evidence = found.evidence;

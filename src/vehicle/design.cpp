@@ -5,6 +5,7 @@
 
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/parts/any_transmission.hpp"
+#include "wingbeat/parts/coefficient_sets.hpp"
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/spring.hpp"
@@ -141,6 +142,40 @@ void validate_angle_of_attack(const AerodynamicsDesign<double>& air) {
                        "is held by the stop angle_of_attack_min whatever C_alpha is; give pitch_coefficient beside it");
 }
 
+/// What acts by strips, at tips or between wings needs an outline, and not all of it goes together.
+void validate_air_of_strips(const Design<double>& d) {
+  const AerodynamicsDesign<double>& air = d.aerodynamics;
+  const Planform<double>& planform = d.wing.planform;
+  if (planform.shape == PlanformShape::moments) {
+    for (const auto& [given, key] : {std::pair{air.lifting_span.has_value(), tip_loss_key::lifting_span.path},
+                                     {air.induced_velocity.has_value(), induced_velocity_key::share.path},
+                                     {air.clap.amplitude.has_value(), clap_and_fling_key::amplitude.path}}) {
+      if (given) throw ParameterError(key, "needs the wing's outline: give a planform with a shape");
+    }
+    return;
+  }
+  const double tip = length_of(planform) + hub_offset_of(planform);
+  if (air.lifting_span) {
+    if (!(*air.lifting_span * tip > hub_offset_of(planform))) {
+      throw ParameterError(tip_loss_key::lifting_span.path,
+                           detail::format("leaves nothing of the wing that lifts: its root is at %.3f of the distance "
+                                          "from hinge to tip, got %g",
+                                          hub_offset_of(planform) / tip, *air.lifting_span));
+    }
+    if (d.wing.torsion.stiffness) {
+      throw ParameterError(tip_loss_key::lifting_span.path, "is for wings that do not twist: without wing.torsion");
+    }
+    if (air.induced_velocity && planform.shape == PlanformShape::tabulated) {
+      throw ParameterError(tip_loss_key::lifting_span.path,
+                           "is not for a tabulated outline with induced_velocity; give one of them, or another shape");
+    }
+  }
+  if (air.clap.amplitude && !air.clap.meeting_angle && !std::isfinite(stroke_where_wings_meet(planform))) {
+    throw ParameterError(clap_and_fling_key::meeting_angle.path,
+                         "missing: by wing.planform.shoulder_distance the wings never meet");
+  }
+}
+
 /// A moment of inertia that is stated grows with the scale or does not; one that follows has no choice.
 void validate_scale(const WingDesign<double>& wing) {
   if (wing.scale_inertia || !(wing.areal_density || wing.resonance)) return;
@@ -157,10 +192,11 @@ void validate_pitching(const Design<double>& d, const Vehicle<double>& v) {
       throw ParameterError(inertia ? pitch_key::pitch_inertia.path : pitch_key::mass_product.path,
                            "is for wings that pitch or twist; give pitch.stiffness or wing.torsion.stiffness");
     }
-    if (d.aerodynamics.coefficients_name != normal_force_set) return;
-    throw ParameterError("aerodynamics.coefficients",
-                         std::string(normal_force_set) +
-                             " is for wings that pitch on a hinge; give pitch.stiffness, or translational-2022");
+    const CoefficientSet* set = coefficient_set(d.aerodynamics.coefficients_name);
+    if (!set || !set->hinged_alone) return;
+    throw ParameterError(
+        "aerodynamics.coefficients",
+        std::string(set->name) + " is for wings that pitch on a hinge; give pitch.stiffness, or translational-2022");
   }
   const char* key = d.pitch.stiffness ? pitch_key::stiffness.path : torsion_key::stiffness.path;
   if (d.wing.planform.shape == PlanformShape::moments) {
@@ -259,6 +295,7 @@ void validate(const Design<double>& d) {
   }
 
   validate_angle_of_attack(air);
+  validate_air_of_strips(d);
   validate_scale(d.wing);
 
   const Vehicle<double> v = resolve(with_any_pitch_coefficient(d));

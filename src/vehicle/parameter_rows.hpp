@@ -11,6 +11,7 @@
 #include "vehicle/drive_rows.hpp"
 #include "vehicle/parameter_access.hpp"
 #include "wingbeat/parts/any_transmission.hpp"
+#include "wingbeat/parts/coefficient_sets.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/spring.hpp"
 #include "wingbeat/parts/wing_limits.hpp"
@@ -192,12 +193,12 @@ constexpr auto wing_rows() {
                        [](auto& d) -> auto& { return d.wing.rib_count; }),
       number<S, PitchingWing>(
           row(pitch_key::pitch_inertia, "from areal_density",
-              "I_psi = integral x^2 dm of one wing about its leading edge, where it pitches or twists; given with "
+              "I_psi = integral x^2 dm of one wing about its pitch axis, where it pitches or twists; given with "
               "mass_product, or both follow from areal_density"),
           [](auto& d) -> auto& { return d.wing.pitch_inertia; }),
       number<S, PitchingWing>(
           row(pitch_key::mass_product, "from areal_density",
-              "P = integral r x dm of one wing, r from the flapping hinge, x behind the leading edge"),
+              "P = integral r x dm of one wing, r from the flapping hinge, x behind the pitch axis"),
           [](auto& d) -> auto& { return d.wing.mass_product; }),
       number<S>(
           row(torsion_key::stiffness, "none: no twist",
@@ -263,16 +264,20 @@ constexpr auto wing_rows() {
       text<S, Pitching>({"pitch.rotational_lift",
                          "",
                          {"true or false"},
-                         "true, with normal-force-robofly false",
-                         "the force that the circulation of a pitching wing adds, C_rot = 0.75 pi"},
+                         "true, with normal-force-robofly and robobee false",
+                         "the force that the circulation of a pitching wing adds, C_rot = pi (0.75 - x_0)"},
                         [](const D& d) {
                           if (!Pitching::holds(d)) return std::string();
                           return std::string(d.pitch.rotational_lift ? "true" : "false");
                         }),
-      number<S, Pitching>(row(pitch_key::damping_coefficient, "0, with normal-force-robofly 5",
+      number<S, Pitching>(row(pitch_key::damping_coefficient, "0, with normal-force-robofly and robobee 5",
                               "C_rd, drag coefficient of a wing that turns about its "
                               "leading edge"),
                           [](auto& d) -> auto& { return d.pitch.damping_coefficient; }),
+      number<S, Pitching>(row(pitch_key::axis, "0",
+                              "x_0, position of the pitch axis behind the leading edge over the chord: C_rot = "
+                              "pi (0.75 - x_0)"),
+                          [](auto& d) -> auto& { return d.pitch.axis; }),
       number<S, Pitching>(row(pitch_key::edge_suction, "0",
                               "s_L, share of the added mass's force along the chord that counts as lift: with 1 added "
                               "mass has no mean lift"),
@@ -309,12 +314,54 @@ constexpr auto wing_rows() {
       number<S>(row(wing_limits_key::reynolds_number_max, "of a named set of coefficients 26000, else none",
                     "highest Reynolds number for which the coefficients hold"),
                 [](auto& d) -> auto& { return d.aerodynamics.reynolds_number_max; }),
+      number<S>(
+          row(tip_loss_key::lifting_span, "1: no loss at the tips",
+              "B, part of the distance from hinge to tip that lifts; beyond it the wings have the drag C_D(0) alone"),
+          [](auto& d) -> auto& { return d.aerodynamics.lifting_span; }),
+      number<S>(row(induced_velocity_key::share, "none",
+                    "share, 0 to 1, of the induced velocity of momentum theory that counts. Coefficients measured on "
+                    "flapping wings hold a wake of their own, so that 1 counts part of it twice"),
+                [](auto& d) -> auto& { return d.aerodynamics.induced_velocity; }),
+      number<S, InducedVelocityGiven>(
+          row(induced_velocity_key::swept_area, "that of the stroke",
+              "A_0, area of the actuator disc; else of each wing the sector of twice the stroke amplitude"),
+          [](auto& d) -> auto& { return d.aerodynamics.swept_area; }),
+      number<S>(row(clap_and_fling_key::amplitude, "none",
+                    "A: where wings meet at the reversal with the largest stroke angle, all aerodynamic forces are "
+                    "multiplied by 1 + A exp(-s / (lambda c)) on their way apart, s being the way of the 70 % station "
+                    "since then and c the mean chord"),
+                [](auto& d) -> auto& { return d.aerodynamics.clap.amplitude; }),
+      number<S, ClapGiven>(row(clap_and_fling_key::decay, "1", "lambda, way over the mean chord on which it decays"),
+                           [](auto& d) -> auto& { return d.aerodynamics.clap.decay; }),
+      number<S, ClapGiven>(
+          row(clap_and_fling_key::gap, "1",
+              "g, distance over the mean chord of the 70 % stations of the two wings at the reversal, up "
+              "to which they act on each other"),
+          [](auto& d) -> auto& { return d.aerodynamics.clap.gap; }),
+      number<S, ClapGiven>(row(clap_and_fling_key::meeting_angle, "that of two wings on one body, about 90 deg",
+                               "stroke angle at which the two wings touch"),
+                           [](auto& d) -> auto& { return d.aerodynamics.clap.meeting_angle; }),
+      text<S, Pitching>(
+          {"aerodynamics.centre_of_pressure",
+           "",
+           {wingbeat::listed_names<CentreOfPressure>()},
+           name_of(CentreOfPressure::fourier),
+           "where the force of translation acts along the chord: a Fourier series over the angle of attack, "
+           "or a curve from 0.25 to 0.5"},
+          [](const D& d) {
+            const CentreOfPressure law = d.pitch.centre_of_pressure;
+            const bool stated = Pitching::holds(d) && law != CentreOfPressure::fourier;
+            return std::string(stated ? name_of(law) : "");
+          }),
       text<S>({"aerodynamics.coefficients",
                "",
-               {"translational-2022, normal-force-robofly (with pitch.stiffness), or a table of the keys below"},
+               {"translational-2022, normal-force-robofly (with pitch.stiffness), robobee, normal-tangential, or a "
+                "table of the keys below"},
                "translational-2022",
                "lift and drag coefficient against angle of attack, eqs (12, 13); normal-force-robofly: "
-               "C_L = 1.8 sin(2 alpha), C_D = 1.95 - 1.5 cos(2 alpha), of both the component normal to the chord",
+               "C_L = 1.8 sin(2 alpha), C_D = 1.95 - 1.5 cos(2 alpha), of both the component normal to the chord; "
+               "robobee: C_L = 1.8 sin(2 alpha), C_D = 1.9 - 1.5 cos(2 alpha); normal-tangential: "
+               "C_N = 3.4 sin(alpha), C_T = 0.4 cos(2 alpha)^2 below 45 deg, else 0",
                {},
                "translational-2022"},
               [](const D& d) {
@@ -345,6 +392,11 @@ constexpr auto wing_rows() {
       wave_number<S>(
           {"aerodynamics.coefficients.drag.phase", "rad", range::any, "required", "D of C_D = A + B cos(C alpha + D)"},
           [](auto& c) -> auto& { return c.drag.phase; }),
+      number<S, OwnCoefficients>(
+          {"aerodynamics.coefficients.tangential", "1", range::not_negative, "0",
+           "C_T,0 of a force along the chord beside C_L and C_D: C_T = C_T,0 cos(2 alpha)^2 below "
+           "45 deg, else 0"},
+          [](auto& d) -> auto& { return d.aerodynamics.coefficients.tangential; }),
       table<S>({"aerodynamics.coefficients.table",
                 "",
                 {"name of a CSV file, or three or more rows, angles growing"},

@@ -30,7 +30,7 @@ PitchingPair pitching_pair(NormalForce normal_force = NormalForce::lift_and_drag
   pair.p.pitch_inertia = two_wings * 4e-9;
   pair.p.mass_product = two_wings * 1.2e-8;
   pair.p.moments = pitch_chord_moments(outline, two_wings);
-  pair.p.air = pitch_added_mass(air_density, pair.p.moments);
+  pair.p.air = pitch_added_mass(air_density, pair.p.moments, 0.0);
   pair.p.normal_force = normal_force;
   return pair;
 }

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "wingbeat/core/jet.hpp"
+#include "wingbeat/parts/coefficient_sets.hpp"
 #include "wingbeat/parts/twisting_wings.hpp"
 
 namespace wingbeat {
@@ -33,9 +34,9 @@ Wings wings_of(PlanformShape shape, NormalForce normal_force = NormalForce::norm
   wings.w.pitch_coefficient = 0.0;
   wings.w.s2 = moments.s2;
   wings.w.s3 = moments.s3;
-  wings.w.coefficients = force_coefficients_robofly();
+  wings.w.coefficients = *named_coefficients(normal_force_set);
   wings.p.moments = pitch_chord_moments(plan, 2.0);
-  wings.p.air = pitch_added_mass(1.225, wings.p.moments);
+  wings.p.air = pitch_added_mass(1.225, wings.p.moments, 0.0);
   wings.p.pitch_inertia = 4e-9;
   wings.p.mass_product = 6e-9;
   wings.p.hinge = {6e-4, 4e-8};

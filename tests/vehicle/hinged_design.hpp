@@ -7,7 +7,7 @@
 #include "vehicle/direct_design.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/wide_boxes.hpp"
-#include "wingbeat/parts/pitching_wings.hpp"
+#include "wingbeat/parts/coefficient_sets.hpp"
 
 namespace wingbeat {
 
@@ -25,7 +25,7 @@ inline Design<double> on_hinges(Design<double> d, double stiffness) {
   d.aerodynamics.pitch_coefficient = 0.0;
   d.aerodynamics.added_mass = true;
   d.aerodynamics.coefficients_name = normal_force_set;
-  d.aerodynamics.coefficients = force_coefficients_robofly();
+  d.aerodynamics.coefficients = *named_coefficients(normal_force_set);
   return d;
 }
 

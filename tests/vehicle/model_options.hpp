@@ -6,7 +6,7 @@
 #include <random>
 #include <string_view>
 
-#include "wingbeat/parts/pitching_wings.hpp"
+#include "wingbeat/parts/coefficient_sets.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
@@ -58,7 +58,7 @@ inline void add_model_option(Design<double>& d, ModelOption option, std::uint32_
     d.aerodynamics.angle_of_attack_min.reset();
     d.aerodynamics.pitch_coefficient = 0.0;
     d.aerodynamics.coefficients_name = normal_force_set;
-    d.aerodynamics.coefficients = force_coefficients_robofly();
+    d.aerodynamics.coefficients = *named_coefficients(normal_force_set);
     if (d.transmission.type == TransmissionType::direct) {
       d.motor.constants.friction_torque = 0.0;
       if (d.friction.law == FrictionLaw::constant) d.friction = {FrictionLaw::none, 0.0};

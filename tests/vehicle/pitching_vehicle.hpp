@@ -28,7 +28,7 @@ inline Vehicle<double> pitching_vehicle(double stiffness, double voltage = 3.0, 
   w.pitch_inertia = d.wing.count * 3e-9;
   w.mass_product = d.wing.count * 8e-9;
   w.moments = pitch_chord_moments(d.wing.planform, d.wing.count);
-  w.air = pitch_added_mass(v.wings.air_density, w.moments);
+  w.air = pitch_added_mass(v.wings.air_density, w.moments, 0.0);
   w.normal_force = NormalForce::normal_force;
   return v;
 }

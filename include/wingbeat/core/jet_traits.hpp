@@ -26,6 +26,7 @@ struct ScalarTraits<ceres::Jet<double, N>> {
   static bool any(bool mask) { return mask; }
   static bool all(bool mask) { return mask; }
   static double value_of(const Jet<N>& x) { return x.a; }
+  static bool has_derivative(const Jet<N>& x) { return (x.v.array() != 0.0).any(); }
 };
 
 }  // namespace wingbeat

@@ -97,14 +97,21 @@ constexpr auto cast(const Part<S>& part);
 
 namespace detail {
 
+/// Derivatives are dropped where a T has none.
+template <Scalar T, Scalar S>
+constexpr T converted_number(const S& x) {
+  if constexpr (std::is_constructible_v<T, const S&>) return T(x);
+  else return T(value_of(x));
+}
+
 template <Scalar T, class M>
 constexpr auto converted(const M& member) {
   if constexpr (ListsMembers<M>) {
     return cast<T>(member);
   } else if constexpr (Scalar<M>) {
-    return T(member);
+    return converted_number<T>(member);
   } else if constexpr (is_optional<M>) {
-    return member ? std::optional<T>(T(*member)) : std::nullopt;
+    return member ? std::optional<T>(converted_number<T>(*member)) : std::nullopt;
   } else if constexpr (is_shared<M> && !ScalarTraits<T>::reads_tables) {
     return nullptr;
   } else {

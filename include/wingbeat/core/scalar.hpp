@@ -54,4 +54,11 @@ double value_of(const S& x) {
   return ScalarTraits<S>::value_of(x);
 }
 
+/// Whether a number that may be missing, 0 then, has an effect: above 0, or differentiated by; on lanes, in any.
+template <Scalar S>
+bool acts(const S& x) {
+  if constexpr (ScalarTraits<S>::differentiates) return value_of(x) > 0.0 || ScalarTraits<S>::has_derivative(x);
+  else return any<S>(x > S(0.0));
+}
+
 }  // namespace wingbeat

@@ -61,6 +61,7 @@ struct StatusEvidence {
     no_response,        ///< of a direct drive: search
     open_balance,  ///< change: of the input, what the energy balance of the cycle found leaves open; search or direct
     no_steady_temperature,  ///< winding_temperature, the last of a search around cycles that flap
+    no_steady_air,          ///< induced_velocity, the last of a search around cycles that flap
     no_cycle,  ///< it rotates in time, but neither an orbit (search, direct) nor a simulated cycle was found
     // Undecided, in time; a crank also has `range` of its angles, or the frequency where it revolves; `search` where an
     // orbit was sought before
@@ -88,6 +89,7 @@ struct StatusEvidence {
   double change = absent;               ///< relative, of cycles [1]
   double accuracy = absent;             ///< of the metrics, relative [1]
   double travel = absent;               ///< [rad]
+  double induced_velocity = absent;     ///< [m/s]
   double winding_temperature = absent;  ///< [degC]; where it stands in the way, of the motor that flaps while colder
   double over_rotation = absent;        ///< of wings that pitch: share of the period with alpha beyond 90 degrees [1]
   double other_amplitude = absent;      ///< stroke amplitude of a second stable response to the same supply [rad]

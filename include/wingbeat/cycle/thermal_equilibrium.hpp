@@ -74,7 +74,7 @@ double tolerance_within_equilibrium(double tolerance);
 
 namespace detail {
 
-/// find_steady_flapping() with the motor's constants as the vehicle has them, whatever it heats up to.
+/// find_steady_flapping() with the motor's constants and the air as the vehicle has them, whatever either settles at.
 SteadyFlapping find_flapping_as_it_is(const Vehicle<double>& vehicle, const SteadyOptions& options,
                                       const StartUp& start_up);
 

@@ -102,7 +102,8 @@ class PackOrbit {
     has_knots_ =
         vehicle.wings.coefficients.table.from_tables || vehicle.transmission.type == TransmissionType::tabulated;
     adds_mass_ = any<L>(vehicle.wings.added_inertia > L(0.0));
-    every_law_ = kinks_ || adds_mass_;
+    every_law_ = kinks_ || adds_mass_ || has_wake(vehicle.wings) || any<L>(vehicle.wings.tip.s3 > L(0.0)) ||
+                 any<L>(vehicle.wings.coefficients.tangential > L(0.0));
     in_one_piece_ = settings.in_one_piece;
     lags_ = N == 1 && settings.current == PackCurrent::lagging;
     if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;

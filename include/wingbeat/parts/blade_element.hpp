@@ -15,6 +15,10 @@
 #include "wingbeat/core/range.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
+#include "wingbeat/parts/clap_and_fling.hpp"
+#include "wingbeat/parts/coefficient_table.hpp"
+#include "wingbeat/parts/induced_velocity.hpp"
+#include "wingbeat/parts/tip_loss.hpp"
 
 namespace wingbeat {
 
@@ -39,70 +43,6 @@ struct CoefficientWave {
   }
 };
 
-/// The polynomial pieces of a coefficient table and how to find the one that holds. Plain numbers: it stays with the
-/// table, and code built for a wide instruction set may read it.
-struct CoefficientLookup {
-  /// Of lift and drag a + b t + c t^2 + d t^3, t = alpha - x0 [rad].
-  struct Row {
-    double x0;
-    std::array<double, 4> lift, drag;
-  };
-  const double* knot;  ///< [rad], growing, after the last one not a number
-  const Row* row;      ///< [k]: where k knots lie at or below alpha
-  const int* first;    ///< [b]: knots before bucket b of the table's angles
-  int buckets;
-  int max_in_bucket;  ///< knots in one bucket
-  double front;       ///< first angle of the table [rad]
-  double buckets_per_angle;
-  /// Where all knots are a whole number of equal steps from the first: of each step, t counted in steps from its start;
-  /// else null.
-  struct Step {
-    std::array<double, 4> lift, drag;
-  };
-  const Step* step;
-  int steps;  ///< 0 without
-  double steps_per_angle;
-
-  /// How many knots lie at or below alpha.
-  [[gnu::always_inline]] int knots_up_to(double alpha) const {
-    const double bucket = (alpha - front) * buckets_per_angle, last = buckets - 1;
-    int k = first[int(!(bucket > 0.0) ? 0.0 : bucket < last ? bucket : last)];
-    k += alpha >= knot[k];
-    for (int n = 1; n < max_in_bucket; ++n) k += alpha >= knot[k];
-    return k;
-  }
-};
-
-/// Lift and drag coefficient against angle of attack as natural cubic splines through a table; the end values hold
-/// outside the table.
-class CoefficientTable {
- public:
-  /// `alpha` [rad] strictly growing, at least three rows. Throws ParameterError naming the row.
-  CoefficientTable(std::vector<double> alpha, std::vector<double> lift, std::vector<double> drag);
-
-  struct Cubic {
-    double x0, a, b, c, d;  ///< a + b t + c t^2 + d t^3, t = x - x0
-  };
-  /// The polynomial piece that holds at alpha; a constant outside the table.
-  [[gnu::pure]] Cubic lift_piece(double alpha) const;
-  [[gnu::pure]] Cubic drag_piece(double alpha) const;
-
-  const std::vector<double>& alpha() const { return alpha_; }
-  const std::vector<double>& lift() const { return lift_values_; }
-  const std::vector<double>& drag() const { return drag_values_; }
-  /// Valid while the table lives.
-  CoefficientLookup lookup() const;
-
- private:
-  void lay_steps();
-
-  std::vector<double> alpha_, lift_values_, drag_values_, knots_;
-  std::vector<CoefficientLookup::Row> rows_;
-  std::vector<int> first_;
-  std::vector<CoefficientLookup::Step> steps_;
-  int max_in_bucket_ = 0;
-};
-
 /// What SIMD lanes, which read no tables by themselves, know of their designs' tables and of where the coefficients
 /// have a kink: at a stop of the pitching, or where a table begins, below which its end value holds. Either all lanes
 /// have a table or none, and either all have a kink or none.
@@ -116,7 +56,7 @@ struct LaneTables {
   LaneTables(std::nullptr_t = nullptr) {}  // NOLINT: of lanes without
 };
 
-/// Translational force coefficients: two waves, or a table where one is given.
+/// Translational force coefficients: two waves, with a force along the chord beside them or not, or a table.
 template <Scalar S>
 struct ForceCoefficients {
   using Table =
@@ -125,10 +65,11 @@ struct ForceCoefficients {
   CoefficientWave<S> lift;
   CoefficientWave<S> drag;
   Table table = nullptr;
+  S tangential = S(0);  ///< \f$C_\mathrm{T,0}\f$ of tangential_coefficient() [1], >= 0; not with a table
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
-    return use(self.lift, self.drag, self.table);
+    return use(self.lift, self.drag, self.table, self.tangential);
   }
 };
 
@@ -167,11 +108,14 @@ struct BladeElement {
   /// Stop of the passive pitching: alpha never falls below it [rad], 0 to pi/2; minus infinity where there is none.
   S angle_of_attack_min = S(-std::numeric_limits<double>::infinity());
   S added_inertia = S(0);  ///< J_a of all wings, of the air that moves normal to the chord [kg m2], >= 0; 0 without
+  TipLoss<S> tip = {};
+  ClapAndFling<S> clap = {};
+  InducedVelocity<S> wake = {};
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.air_density, self.pitch_coefficient, self.s2, self.s3, self.coefficients, self.angle_of_attack_min,
-               self.added_inertia);
+               self.added_inertia, self.tip, self.clap, self.wake);
   }
 };
 
@@ -233,9 +177,24 @@ template <Scalar S>
 
 }  // namespace detail
 
-/// C_L [1] (eq 12) at angle of attack alpha [rad]: a sine of CoefficientWave, or the table's spline.
+/// C_T [1] along the chord towards the trailing edge, over the amplitude \f$C_\mathrm{T,0}\f$, at the angle of attack
+/// alpha [rad], below 45 degrees alone (Dickinson, Lehmann and Sane, Science 284, 1999).
+/// \f[
+/// \frac{C_\mathrm{T}}{C_\mathrm{T,0}} = \cos^2 2\alpha \quad \text{where } |\alpha| < \frac{\pi}{4},
+/// \text{ else } 0
+/// \f]
+template <Scalar S>
+S tangential_coefficient(const S& alpha) {
+  using std::abs;
+  using std::cos;
+  return select<S>(abs(alpha) < S(0.25 * pi), square(S(cos(S(S(2.0) * alpha)))), S(0.0));
+}
+
+/// C_L [1] (eq 12) at angle of attack alpha [rad]: a sine of CoefficientWave, less the share of a force along the
+/// chord, or the table's spline.
 /// \f[
 /// C_\mathrm{L}(\alpha) = a_\mathrm{L} + b_\mathrm{L} \sin(m_\mathrm{L} \alpha + \alpha_\mathrm{0,L})
+/// - C_\mathrm{T} \sin\alpha
 /// \f]
 template <Scalar S>
 S lift_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
@@ -243,12 +202,16 @@ S lift_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   if constexpr (ScalarTraits<S>::reads_tables) {
     if (c.table) return detail::evaluate_table([&](double x) { return c.table->lift_piece(x); }, alpha);
   }
-  return c.lift.offset + c.lift.amplitude * sin(c.lift.rate * alpha + c.lift.phase);
+  const S wave = c.lift.offset + c.lift.amplitude * sin(c.lift.rate * alpha + c.lift.phase);
+  if (!acts(c.tangential)) return wave;
+  return wave - c.tangential * tangential_coefficient(alpha) * sin(alpha);
 }
 
-/// C_D [1] (eq 13) at angle of attack alpha [rad]: a cosine of CoefficientWave, or the table's spline.
+/// C_D [1] (eq 13) at angle of attack alpha [rad]: a cosine of CoefficientWave and the share of a force along the
+/// chord, or the table's spline.
 /// \f[
 /// C_\mathrm{D}(\alpha) = a_\mathrm{D} + b_\mathrm{D} \cos(m_\mathrm{D} \alpha + \alpha_\mathrm{0,D})
+/// + C_\mathrm{T} \cos\alpha
 /// \f]
 template <Scalar S>
 S drag_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
@@ -256,7 +219,9 @@ S drag_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   if constexpr (ScalarTraits<S>::reads_tables) {
     if (c.table) return detail::evaluate_table([&](double x) { return c.table->drag_piece(x); }, alpha);
   }
-  return c.drag.offset + c.drag.amplitude * cos(c.drag.rate * alpha + c.drag.phase);
+  const S wave = c.drag.offset + c.drag.amplitude * cos(c.drag.rate * alpha + c.drag.phase);
+  if (!acts(c.tangential)) return wave;
+  return wave + c.tangential * tangential_coefficient(alpha) * cos(alpha);
 }
 
 /// Both at once. Without `every_law` lanes have no tables.
@@ -338,8 +303,65 @@ S added_energy(const BladeElement<S>& w, const S& alpha, const S& stroke_velocit
   return S(0.5) * w.added_inertia * square(S(sin(alpha) * stroke_velocity));
 }
 
+/// Moment of the profile drag of the tips that do not lift, against the stroke [N m].
+/// \f[
+/// \tfrac12 \rho\, C_\mathrm{D}(0)\, \dot\beta^2 S_{3,\mathrm{tip}}
+/// \f]
+template <Scalar S>
+S tip_drag_moment(const BladeElement<S>& w, const S& stroke_speed) {
+  return S(0.5) * w.air_density * w.tip.profile_drag * square(stroke_speed) * w.tip.s3;
+}
+
+/// True where an induced velocity acts; on lanes, of any.
+template <Scalar S>
+bool has_wake(const BladeElement<S>& w) {
+  return any<S>(w.wake.velocity > S(0.0));
+}
+
+/// True where forces are not all of lift_coefficient() and drag_coefficient() of waves, times S_2 and S_3.
+inline bool acts_by_strips(const BladeElement<double>& w) {
+  return has_wake(w) || w.tip.s3 > 0.0 || w.coefficients.tangential > 0.0;
+}
+
+/// Lift [N] and, in the place of a drag, the moment against the stroke [N m] of wings in their wake, at the geometric
+/// angle of attack alpha [rad] and the stroke speed |beta'| [rad/s]. With U and phi of strip_flow() at each strip, and
+/// with \f$C_\mathrm{L}(\alpha - \varphi) - C_\mathrm{L}(0) \sin^2\varphi\f$ in the place of C_L: a chord along the
+/// flow has no side to which to lift, and a set that says otherwise would make the moment jump where the stroke
+/// reverses.
+/// \f[
+/// \begin{aligned}
+/// L &= \tfrac12 \rho \sum U^2 \left( C_\mathrm{L}(\alpha - \varphi) \cos\varphi
+/// - C_\mathrm{D}(\alpha - \varphi) \sin\varphi \right) c\,\mathrm{d}r \cr
+/// M &= \tfrac12 \rho \sum U^2 \left( C_\mathrm{D}(\alpha - \varphi) \cos\varphi
+/// + C_\mathrm{L}(\alpha - \varphi) \sin\varphi \right) r\, c\,\mathrm{d}r
+/// \end{aligned}
+/// \f]
+///
+/// The factor `clap` of clap and fling multiplies what flapping makes of a strip, so that nothing jumps at a reversal:
+/// the share \f$\cos^2\varphi\f$.
+template <Scalar S>
+[[gnu::noinline]] LiftAndDrag<S> loads_in_wake(const BladeElement<S>& w, const S& alpha, const S& stroke_speed,
+                                               const S& clap) {
+  using std::cos;
+  using std::sin;
+  LiftAndDrag<S> sum{S(0.0), clap * tip_drag_moment(w, stroke_speed)};
+  const S along_the_flow = force_coefficients<true>(w.coefficients, S(0.0)).lift;
+  for (const WakeStrip<S>& strip : w.wake.strips.at) {
+    const StripFlow<S> flow = strip_flow(w.wake, strip, stroke_speed);
+    const LiftAndDrag<S> of_set = force_coefficients<true>(w.coefficients, S(alpha - flow.inflow_angle));
+    const S c = cos(flow.inflow_angle), s = sin(flow.inflow_angle);
+    const S C_L = of_set.lift - along_the_flow * square(s), C_D = of_set.drag;
+    const S closeness = S(1.0) + (clap - S(1.0)) * square(c);
+    const S pressure = S(0.5) * w.air_density * flow.square_of_speed * strip.area * closeness;
+    sum.lift = sum.lift + pressure * (C_L * c - C_D * s);
+    sum.drag = sum.drag + pressure * strip.radius * (C_D * c + C_L * s);
+  }
+  return sum;
+}
+
 /// The loads at stroke velocity beta' [rad/s] of the sign `stroke`. `pitching` is the branch of the passive pitching:
-/// +1 free, -1 at the stop. Without `every_law` lanes know waves alone: no table, no stop, no added mass. Always
+/// +1 free, -1 at the stop. Without `every_law` lanes know waves alone: no table, no stop, no added
+/// mass, no wake, no loss at tips. Always
 /// inlined, with all that returns it (motion_at and below): a right-hand side that reads the moment alone pays for
 /// nothing else. Eqs (14, 2, 3, 19), with \f$\alpha_\mathrm{min}\f$ in place of a smaller \f$\alpha\f$:
 /// \f[
@@ -349,9 +371,12 @@ S added_energy(const BladeElement<S>& w, const S& alpha, const S& stroke_velocit
 /// & P_\mathrm{aero} &= M_\mathrm{aero} \dot\beta
 /// \end{aligned}
 /// \f]
+///
+/// all of it times the factor `clap` of clap and fling.
 template <bool every_law = true, Scalar S>
 [[gnu::always_inline]] inline AeroLoads<S> aero_loads(const BladeElement<S>& w, const S& stroke_velocity,
-                                                      const S& stroke, const S& pitching) {
+                                                      const S& stroke, const S& pitching,
+                                                      [[maybe_unused]] const S& clap = S(1.0)) {
   const S speed = stroke * stroke_velocity;
   AeroLoads<S> loads;
   S alpha = S(pi / 2.0) - w.pitch_coefficient * speed;
@@ -369,15 +394,30 @@ template <bool every_law = true, Scalar S>
       at_stop = select<S>(stops, pitching, S(1.0));
     }
   }
-  const auto [C_L, C_D] = force_coefficients<every_law>(w.coefficients, read_at);
   loads.angle_of_attack = alpha;
   loads.pitch_margin = S(1.0);
   if constexpr (ScalarTraits<S>::reads_tables || every_law) loads.pitch_margin = pitch_margin(w, speed);
-  loads.lift = S(0.5) * w.air_density * C_L * square(speed) * w.s2;
-  loads.moment = stroke * (S(0.5) * w.air_density * C_D * square(speed) * w.s3);
-  loads.power = loads.moment * stroke_velocity;
   loads.added_inertia = S(0.0);
   if constexpr (every_law) loads.added_inertia = added_inertia(w, alpha, at_stop);
+  if constexpr (every_law) {
+    if (has_wake(w)) {
+      const LiftAndDrag<S> strips = loads_in_wake(w, read_at, speed, clap);
+      loads.lift = strips.lift;
+      loads.moment = stroke * strips.drag;
+      loads.power = loads.moment * stroke_velocity;
+      return loads;
+    }
+  }
+  const auto [C_L, C_D] = force_coefficients<every_law>(w.coefficients, read_at);
+  S s2 = w.s2, s3 = w.s3;
+  if constexpr (every_law) s2 = s2 - w.tip.s2, s3 = s3 - w.tip.s3;
+  loads.lift = S(0.5) * w.air_density * C_L * square(speed) * s2;
+  loads.moment = stroke * (S(0.5) * w.air_density * C_D * square(speed) * s3);
+  if constexpr (every_law) loads.moment = loads.moment + stroke * tip_drag_moment(w, speed);
+  if constexpr (ScalarTraits<S>::reads_tables) {
+    if (claps(w.clap)) loads.lift = clap * loads.lift, loads.moment = clap * loads.moment;
+  }
+  loads.power = loads.moment * stroke_velocity;
   return loads;
 }
 

@@ -2,13 +2,24 @@
 #pragma once
 
 #include <cmath>
+#include <utility>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/names.hpp"
 #include "wingbeat/core/range.hpp"
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/core/status.hpp"
 
 namespace wingbeat {
+
+/// Where the force of translation acts, over the chord.
+enum class CentreOfPressure {
+  fourier,  ///< Whitney and Wood, J. Fluid Mech. 660, 2010
+  chen      ///< Chen and others, IROS 2016
+};
+template <>
+inline constexpr std::pair<const char*, CentreOfPressure> names_of<CentreOfPressure>[] = {
+    {"whitney-2010", CentreOfPressure::fourier}, {"chen-2016", CentreOfPressure::chen}};
 
 /// At rest at pitch angle psi = 0, where the chord is normal to the stroke plane. psi is positive where the trailing
 /// edge is ahead in the direction of a positive stroke velocity.

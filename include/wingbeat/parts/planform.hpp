@@ -244,6 +244,20 @@ S wing_area(const Planform<S>& p) {
   return p.shape == PlanformShape::semi_ellipse ? S(S(0.25 * pi) * rectangle) : rectangle;
 }
 
+/// \f$\int c^2\,\mathrm{d}r\f$ [m3] of one wing, of a planform that has a shape: \f$\tfrac23 c_0^2 R\f$ of a
+/// semi-ellipse,
+/// \f$c_0^2 R\f$ of a rectangle.
+template <Scalar S>
+S chord_square(const Planform<S>& p) {
+  if (p.shape == PlanformShape::tabulated) {
+    S sum(0.0);
+    detail::visit_outline(p, [&](const S& weight, const S& chord, const S&) { sum = sum + weight * square(chord); });
+    return sum;
+  }
+  const S rectangle = square(detail::root_chord_of(p)) * length_of(p);
+  return p.shape == PlanformShape::semi_ellipse ? S(S(2.0 / 3.0) * rectangle) : rectangle;
+}
+
 /// Moments of higher powers of the chord, r measured from the hinge: what pitch as a degree of freedom needs (model.md
 /// section 12).
 /// \f[

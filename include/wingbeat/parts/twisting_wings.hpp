@@ -62,8 +62,8 @@ StripSums<S> strip_sums(const BladeElement<S>& w, const PitchingWings<S>& p, con
     const WingStrip<S> strip = strip_of(p.torsion, k);
     const S& x = strip.station;
     const PitchState<S> state =
-        pitch_state<S>(root.psi + x * twist.angle, root.velocity + x * twist.velocity, beta_rate);
-    const PitchAddedMass<S> air = pitch_added_mass(density, strip.moments);
+        pitch_state<S>(root.psi + x * twist.angle, root.velocity + x * twist.velocity, beta_rate, root.clap);
+    const PitchAddedMass<S> air = pitch_added_mass(density, strip.moments, p.axis);
     const S own = inertia_per_s30 * strip.moments.s30, product = product_per_s21 * strip.moments.s21;
 
     const S bp = (product + air.rp) * state.cos_psi, pp = own + air.pp;
@@ -80,7 +80,12 @@ StripSums<S> strip_sums(const BladeElement<S>& w, const PitchingWings<S>& p, con
     sum.h_t = sum.h_t + x * h_p;
 
     const PitchAeroLoads<S> aero =
-        aero_loads_of(w, p, strip.s2, strip.s3, strip.moments, state, stroke, sign_of(state.velocity));
+        aero_loads_of(w, p, strip.s2, strip.s3, strip.moments, state, stroke, sign_of(state.velocity),
+                      [&](const S& alpha, TranslationLoads<S>& in_wake) {
+                        const S r = strip.s3 / strip.s2, area = strip.s2 / square(r);
+                        add_strip_in_wake(w, p, {r, area, strip.moments.s22 / strip.s2}, state, stroke, alpha,
+                                          even_normal_force(w, p, state.psi), in_wake);
+                      });
     sum.aero.normal_force = sum.aero.normal_force + aero.normal_force;
     sum.aero.stroke_moment = sum.aero.stroke_moment + aero.stroke_moment;
     sum.aero.pitch_moment = sum.aero.pitch_moment + aero.pitch_moment;
@@ -90,7 +95,7 @@ StripSums<S> strip_sums(const BladeElement<S>& w, const PitchingWings<S>& p, con
     const S momentum = air.r * beta_rate * state.cos_psi + air.p * state.velocity;
     const S chordwise = momentum * state.velocity * state.cos_psi;
     sum.chordwise_lift = sum.chordwise_lift + chordwise;
-    sum.steady_lift = sum.steady_lift - p.edge_suction * chordwise -
+    sum.steady_lift = sum.steady_lift + aero.tangential_lift - p.edge_suction * chordwise -
                       (aero.normal_force - air.r * beta_rate * state.velocity * state.sin_psi) * state.sin_psi;
     const S by_pitch = -air.p * state.sin_psi;
     sum.lift.stroke = sum.lift.stroke - air.r * state.cos_psi * state.sin_psi;

@@ -4,12 +4,10 @@
 
 #include <cmath>
 #include <limits>
-#include <string_view>
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/range.hpp"
 #include "wingbeat/core/scalar.hpp"
-#include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/planform.hpp"
 
 namespace wingbeat {
@@ -34,21 +32,6 @@ inline constexpr ParameterKey kinematic_viscosity{"aerodynamics.kinematic_viscos
 inline constexpr ParameterKey reynolds_number_min{"aerodynamics.reynolds_number_min", "1", range::not_negative};
 inline constexpr ParameterKey reynolds_number_max{"aerodynamics.reynolds_number_max", "1", range::positive};
 }  // namespace wing_limits_key
-
-/// From where to where coefficients hold [1].
-struct ReynoldsRange {
-  double lowest = 0.0, highest = std::numeric_limits<double>::infinity();
-};
-
-/// Of the named sets, both from a model wing at Re = 136 (Dickinson, Lehmann and Sane, Science 284, 1999). Below about
-/// 100 lift falls and drag grows (Wu and Sun, J. Exp. Biol. 207, 2004); from 1100 to 26000, mayfly to quail, the
-/// coefficients of revolving wings hardly change (Usherwood and Ellington, J. Exp. Biol. 205, 2002).
-inline constexpr ReynoldsRange robofly_reynolds_range{100.0, 26000.0};
-
-/// Of the set of that name; a vehicle's own coefficients are not limited.
-inline ReynoldsRange reynolds_range_of(std::string_view coefficients) {
-  return named_coefficients(coefficients) ? robofly_reynolds_range : ReynoldsRange{};
-}
 
 /// What the mean of |beta'| makes, by this factor [s/rad], the Reynolds number of the mean chord \f$\overline{c}\f$ at
 /// the mean speed of the tip (Ellington, Phil. Trans. R. Soc. Lond. B 305, 1984); not a number without a shape. With

@@ -14,6 +14,7 @@
 #include "wingbeat/parts/motor.hpp"
 #include "wingbeat/parts/motor_thermal.hpp"
 #include "wingbeat/parts/piezo.hpp"
+#include "wingbeat/parts/pitch_hinge.hpp"
 #include "wingbeat/parts/planform.hpp"
 #include "wingbeat/parts/stroke_table.hpp"
 #include "wingbeat/parts/supply.hpp"
@@ -201,11 +202,27 @@ struct PitchDesign {
   S damping_coefficient = S(0);  ///< C_rd [1]; see rotation_with()
   S edge_suction = S(0);         ///< s_L of the added mass [1]
   S friction = S(0);             ///< T_psi of one hinge [N m]
+  S axis = S(0);                 ///< x_0, behind the leading edge over the chord [1]
+  CentreOfPressure centre_of_pressure = CentreOfPressure::fourier;
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.stiffness, self.damping, self.stop, self.rotational_lift, self.damping_coefficient,
-               self.edge_suction, self.friction);
+               self.edge_suction, self.friction, self.axis, self.centre_of_pressure);
+  }
+};
+
+/// [aerodynamics.clap_and_fling]: there as soon as the amplitude is given.
+template <Scalar S>
+struct ClapDesign {
+  std::optional<S> amplitude;      ///< A [1]
+  S decay = S(1);                  ///< lambda, in mean chords [1]
+  S gap = S(1);                    ///< g, in mean chords [1]
+  std::optional<S> meeting_angle;  ///< stroke angle at which the wings meet [rad]; that of two on one body unless given
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.amplitude, self.decay, self.gap, self.meeting_angle);
   }
 };
 
@@ -223,12 +240,17 @@ struct AerodynamicsDesign {
   std::optional<S> reynolds_number_min, reynolds_number_max;
   /// In place of pitch_coefficient: the angle of attack at the largest |beta'| that C_alpha is found for [rad].
   std::optional<S> angle_of_attack;
+  std::optional<S> lifting_span;      ///< B, part of the distance from hinge to tip that lifts [1]; all unless given
+  std::optional<S> induced_velocity;  ///< share of the momentum theory's induced velocity that counts [1]
+  std::optional<S> swept_area;        ///< A_0 of all wings [m2]; that of the stroke's sectors unless given
+  ClapDesign<S> clap = {};
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.air_density, self.pitch_coefficient, self.coefficients_name, self.coefficients,
                self.angle_of_attack_min, self.added_mass, self.kinematic_viscosity, self.reynolds_number_min,
-               self.reynolds_number_max, self.angle_of_attack);
+               self.reynolds_number_max, self.angle_of_attack, self.lifting_span, self.induced_velocity,
+               self.swept_area, self.clap);
   }
 };
 
@@ -285,12 +307,13 @@ bool has_springs(const Design<S>& design) {
   return design.spring.stiffness || design.spring.resonance || design.spring.resonance_ratio;
 }
 
-/// Mass properties of one wing that is stated by its material; empty where its inertia is stated.
+/// Mass properties of one wing that is stated by its material and pitches about that axis [1]; empty where its inertia
+/// is stated.
 template <Scalar S>
-std::optional<WingMass<S>> wing_mass(const WingDesign<S>& wing) {
+std::optional<WingMass<S>> wing_mass(const WingDesign<S>& wing, const S& axis = S(0.0)) {
   if (!wing.areal_density) return std::nullopt;
   return wing_mass(WingMaterial<S>{*wing.areal_density, wing.spar_density, wing.rib_density, wing.rib_count},
-                   wing.planform);
+                   wing.planform, axis);
 }
 
 /// Length of the rod, of a four-bar the coupler [m]; empty where there is none.

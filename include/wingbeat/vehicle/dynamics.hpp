@@ -20,7 +20,7 @@ Configuration<S> configuration_at_angle(const Vehicle<S>& v, const S& angle) {
   using std::cos;
   using std::sin;
   if (drive_of(v).rotates) return configuration_at(v, S(sin(angle)), S(cos(angle)));
-  return {direct_kinematics(v.transmission.direct), v.wing_count * v.spring.stiffness * angle};
+  return {direct_kinematics(v.transmission.direct), v.wing_count * v.spring.stiffness * angle, angle};
 }
 
 /// The instant at these coordinates under the supply, in a mode of which `held`, `slip` and the electronics' branch
@@ -75,7 +75,8 @@ PitchMotion<S> pitch_motion_at(const V<S>& v, const State& instant, const Mode<S
   const PitchingWings<S>& p = v.pitch;
   const CrankKinematics<S>& k = instant.configuration.kinematics;
   const PitchState<S> state =
-      pitch_state<S>(instant.pitch_angle, instant.pitch_velocity, k.stroke_slope * instant.omega);
+      pitch_state<S>(instant.pitch_angle, instant.pitch_velocity, k.stroke_slope * instant.omega,
+                     clap_factor(v, instant.configuration, mode));
   const S N_J = v.wing_count * v.wing_inertia;
   PitchMotion<S> m;
   const auto take = [&](const WingsAtPitch<S>& wings) {

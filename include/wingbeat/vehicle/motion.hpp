@@ -75,7 +75,8 @@ S spring_moment(const V<S>& v, const CrankKinematics<S>& k) {
 template <Scalar S>
 struct Configuration {
   CrankKinematics<S> kinematics;
-  S spring_moment;  ///< N_w k beta [N m]
+  S spring_moment;          ///< N_w k beta [N m]
+  S stroke_angle = S(0.0);  ///< beta [rad], of wings that clap; 0 of others
 };
 
 /// The configuration at a crank angle given by its sine and cosine.
@@ -84,6 +85,9 @@ template <template <Scalar> class V, Scalar S>
   Configuration<S> configuration;
   configuration.kinematics = crank_kinematics(v.transmission, sin_theta, cos_theta);
   configuration.spring_moment = spring_moment(v, configuration.kinematics);
+  if constexpr (ScalarTraits<S>::reads_tables) {
+    if (claps(v.wings.clap)) configuration.stroke_angle = stroke_angle(configuration.kinematics);
+  }
   return configuration;
 }
 
@@ -113,14 +117,24 @@ bool jumps_at_pitch_stop(const V<S>& v) {
   return value_of(v.wings.added_inertia) > 0.0 && has_pitch_stop(v.wings) && value_of(v.wings.pitch_coefficient) > 0.0;
 }
 
+/// clap_factor() at an instant of these signs; lanes have no wings that clap.
+template <template <Scalar> class V, Scalar S>
+S clap_factor(const V<S>& v, const Configuration<S>& configuration, const Mode<S>& mode) {
+  if constexpr (ScalarTraits<S>::reads_tables) {
+    if (claps(v.wings.clap)) return clap_factor(v.wings.clap, configuration.stroke_angle, mode.stroke);
+  }
+  return S(1.0);
+}
+
 /// StrokeLoads of wings under the pitch law, `every_law` as in aero_loads().
 /// \f[
 /// I = N_\mathrm{w} J_\mathrm{w} + J_\mathrm{am}, \qquad M_0 = M_\mathrm{aero}
 /// \f]
 template <bool every_law = true, template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline StrokeLoads<S> stroke_loads(const V<S>& v, const S& stroke_velocity,
-                                                          const Mode<S>& mode) {
-  const AeroLoads<S> aero = aero_loads<every_law>(v.wings, stroke_velocity, mode.stroke, mode.pitching);
+[[gnu::always_inline]] inline StrokeLoads<S> stroke_loads(const V<S>& v, const Configuration<S>& configuration,
+                                                          const S& stroke_velocity, const Mode<S>& mode) {
+  const AeroLoads<S> aero =
+      aero_loads<every_law>(v.wings, stroke_velocity, mode.stroke, mode.pitching, clap_factor(v, configuration, mode));
   S inertia = v.wing_count * v.wing_inertia;
   if constexpr (every_law) inertia = inertia + aero.added_inertia;
   return {aero, inertia, aero.moment};
@@ -198,7 +212,8 @@ template <bool every_law = true, template <Scalar> class V, Scalar S, class Stat
 template <bool every_law = true, template <Scalar> class V, Scalar S, class State>
 [[gnu::always_inline]] inline IntermediateTerms<S> terms_at(const V<S>& v, const State& instant, const Mode<S>& mode) {
   const S stroke_velocity = instant.configuration.kinematics.stroke_slope * instant.omega;
-  return terms_under<every_law>(v, instant, stroke_loads<every_law>(v, stroke_velocity, mode), mode);
+  return terms_under<every_law>(v, instant, stroke_loads<every_law>(v, instant.configuration, stroke_velocity, mode),
+                                mode);
 }
 
 /// Rod force and accelerations of an instant, in a given mode (model.md section 2, eqs 1, 5-11, 21). With A, C and

@@ -6,6 +6,7 @@
 #include "wingbeat/core/scalar.hpp"
 #include "wingbeat/parts/any_transmission.hpp"
 #include "wingbeat/parts/blade_element.hpp"
+#include "wingbeat/parts/coefficient_sets.hpp"
 #include "wingbeat/parts/electronics.hpp"
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
@@ -106,7 +107,7 @@ PitchingWings<S> pitching_wings_of(const Design<S>& design, const S& count, cons
   if (torsion.stiffness) {
     wings.torsion = wing_torsion(design.wing.planform, count, *torsion.stiffness, torsion.damping);
   }
-  if (const std::optional<WingMass<S>> drawn = wing_mass(design.wing)) {
+  if (const std::optional<WingMass<S>> drawn = wing_mass(design.wing, p.axis)) {
     wings.pitch_inertia = count * drawn->pitch_inertia;
     wings.mass_product = count * drawn->mass_product;
   }
@@ -114,12 +115,53 @@ PitchingWings<S> pitching_wings_of(const Design<S>& design, const S& count, cons
     wings.pitch_inertia = count * (inertia_scale(design.wing) * *design.wing.pitch_inertia);
   if (design.wing.mass_product) wings.mass_product = count * (inertia_scale(design.wing) * *design.wing.mass_product);
   wings.moments = pitch_chord_moments(design.wing.planform, count);
-  if (design.aerodynamics.added_mass) wings.air = pitch_added_mass(air_density, wings.moments);
-  if (!p.rotational_lift) wings.rotational_coefficient = S(0.0);
+  wings.axis = p.axis;
+  wings.centre_of_pressure = p.centre_of_pressure;
+  if (design.aerodynamics.added_mass) wings.air = pitch_added_mass(air_density, wings.moments, p.axis);
+  wings.rotational_coefficient = p.rotational_lift ? rotational_coefficient_of(p.axis) : S(0.0);
   wings.damping_coefficient = p.damping_coefficient;
   wings.edge_suction = p.edge_suction;
   if (design.aerodynamics.coefficients_name == normal_force_set) wings.normal_force = NormalForce::normal_force;
   return wings;
+}
+
+/// The stroke angle [rad] at which a turning crank reverses with the largest of its stroke angles.
+template <Scalar S>
+S largest_stroke_angle(const AnyTransmission<S>& t) {
+  const Reversals found = reversals(cast<double>(t));
+  S largest(-infinity);
+  const auto take = [&](double crank_angle) {
+    const S angle = stroke_angle(crank_kinematics(t, S(std::sin(crank_angle)), S(std::cos(crank_angle))));
+    if (value_of(angle) > value_of(largest)) largest = angle;
+  };
+  for (std::size_t n = 0; n < found.count; ++n) take(found.angle[n]);
+  take(0.0);
+  return largest;
+}
+
+/// What of the air acts by strips, at tips and between wings, of wings that a design describes, `count` of them.
+template <Scalar S>
+void set_air_of_strips(const Design<S>& design, const S& count, Vehicle<S>& v) {
+  const AerodynamicsDesign<S>& a = design.aerodynamics;
+  const Planform<S>& planform = design.wing.planform;
+  if (planform.shape == PlanformShape::moments) return;
+  const S R = length_of(planform), d = hub_offset_of(planform), tip_radius = R + d;
+  const S B = a.lifting_span ? *a.lifting_span : S(1.0);
+  if (a.lifting_span) v.wings.tip = tip_loss(planform, count, B, drag_coefficient(v.wings.coefficients, S(0.0)));
+  if (a.induced_velocity) {
+    v.wings.wake.share = *a.induced_velocity;
+    v.wings.wake.sector = count * square(tip_radius);
+    if (a.swept_area) v.wings.wake.swept_area = *a.swept_area;
+    v.wings.wake.strips = wake_strips(planform, count, a.lifting_span ? S((B * tip_radius - d) / R) : S(1.0));
+  }
+  if (a.clap.amplitude) {
+    const S chord = wing_area(planform) / R;
+    const S meeting = a.clap.meeting_angle ? *a.clap.meeting_angle : stroke_where_wings_meet(planform);
+    v.wings.clap.amplitude = *a.clap.amplitude;
+    v.wings.clap.decay_angle = a.clap.decay * chord / (S(clap_station) * tip_radius);
+    v.wings.clap.reach = clap_reach(meeting, a.clap.gap, chord, tip_radius);
+    if (drive_of(v).stroke_is_fixed) v.wings.clap.reversal = largest_stroke_angle(v.transmission);
+  }
 }
 
 /// Limits of the wings that a design describes, `count` of them on one body.
@@ -242,6 +284,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
     v.wings.added_inertia = added_inertia_of(v.wings.air_density, s22);
   }
   if (!follows_pitch_law(design) && wings) v.pitch = pitching_wings_of(design, v.wing_count, v.wings.air_density);
+  if (air) set_air_of_strips(design, v.wing_count, v);
   v.wing_limits = wing_limits_of(design, v.wing_count, condition);
   return v;
 }
