@@ -44,7 +44,7 @@ class CrankSearch {
       }
       orbits.attempt(pitched(slow, quasi_static_pitch(slope * slow)), part);
       orbits.attempt(pitched(slow, 0.0), part);
-      orbits.attempt(pitched(no_load_, std::min(0.5 * pi, vehicle_.pitch.hinge.stop)),
+      orbits.attempt(pitched(no_load_, std::min(0.5 * pi, closer_stop(vehicle_.pitch.hinge))),
                      orbits.empty() ? part : part_with_orbit);
       if (orbits.empty()) orbits.attempt(pitched(no_load_, 0.0), part);
     } else {
@@ -123,7 +123,7 @@ class CrankSearch {
   /// magnitude alone, at most a right angle and the stop.
   double quasi_static_pitch(double stroke_velocity) const {
     const PitchingWings<double>& p = vehicle_.pitch;
-    const double max_angle = std::min(0.5 * pi, p.hinge.stop);
+    const double max_angle = std::min(0.5 * pi, closer_stop(p.hinge));
     const auto holds = [&](double psi) {
       const PitchState<double> state = pitch_state(-psi, 0.0, std::abs(stroke_velocity));
       return p.hinge.stiffness * psi < aero_loads(vehicle_.wings, p, state, 1.0, 1.0).pitch_moment;

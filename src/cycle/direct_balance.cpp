@@ -84,7 +84,7 @@ double typical_pitch(const Vehicle<double>& vehicle, double stroke_velocity, dou
   const double rigidity = std::max(std::abs(stiffness - square(w) * (p.pitch_inertia + p.air.pp)), 0.2 * stiffness);
   // What a stiff hinge leaves of the pitch acts on nothing: its oscillations of that size need not be resolved.
   constexpr double least = 0.02;
-  return std::min({std::max(moment / rigidity, least), is_clamped(p.hinge) ? 1.0 : p.hinge.stop, 1.0}) + 1e-12;
+  return std::min({std::max(moment / rigidity, least), is_clamped(p.hinge) ? 1.0 : farther_stop(p.hinge), 1.0}) + 1e-12;
 }
 
 void add_typical_wings(const Vehicle<double>& vehicle, double stroke_velocity, double angular_frequency,

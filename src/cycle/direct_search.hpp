@@ -45,7 +45,7 @@ class DirectSearch {
     if constexpr (System::on_hinges) {
       // Where the pitching is lightly damped, the return map does not forget its start, and several responses may be
       // stable.
-      orbits.attempt(State{}, part);
+      orbits.attempt(at_rest(), part);
       const bool hinged = is_hinged(vehicle_);
       for (const double psi : {0.25 * pi, 0.5 * pi}) {
         if (responds && hinged) orbits.attempt(harmonic(psi), part);
@@ -54,7 +54,7 @@ class DirectSearch {
       if (orbits.empty() && orbits.unfinished()) orbits.attempt(*orbits.unfinished());
     } else {
       if (responds) orbits.attempt(harmonic(0.0));
-      if (orbits.empty() && !std::isfinite(orbits.unstable_multiplier())) orbits.attempt(State{});
+      if (orbits.empty() && !std::isfinite(orbits.unstable_multiplier())) orbits.attempt(at_rest());
     }
   }
 
@@ -78,12 +78,19 @@ class DirectSearch {
   }
 
  private:
+  State at_rest() const {
+    State y{};
+    y[0] = vehicle_.spring.rest_angle;
+    return y;
+  }
   /// Wings that swing as harmonic balance says and pitch by `amplitude` [rad] against their velocity.
   State harmonic(double amplitude) const {
     const HarmonicResponse& r = balance_.responses.front();
     const std::complex<double> psi = -amplitude * r.speed / std::abs(r.speed);
     const std::complex<double> psi_rate = std::complex<double>(0.0, w_) * psi;
-    return System::state_of({r.stroke.imag(), r.speed.imag(), r.current.imag(), psi.imag(), psi_rate.imag()}, vehicle_);
+    return System::state_of(
+        {vehicle_.spring.rest_angle + r.stroke.imag(), r.speed.imag(), r.current.imag(), psi.imag(), psi_rate.imag()},
+        vehicle_);
   }
 
   const Vehicle<double>& vehicle_;

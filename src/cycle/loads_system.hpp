@@ -93,7 +93,7 @@ struct LoadsSystem : System {
       if (System::on_hinges && meets_stop(from, to)) {
         // Where a neighbouring solution meets the stop.
         const auto before = rates<false>(x, y, from);
-        const Real room = pitch_stops::side<LoadsSystem>(y) * this->vehicle.pitch.hinge.stop - y[System::pitch];
+        const Real room = pitch_stops::room_to_stop(*this, y);
         const Real late = room / before.dy[System::pitch];
         State there = y;
         for (std::size_t n = 0; n < y.size(); ++n) there[n] = y[n] + before.dy[n] * late;

@@ -46,6 +46,7 @@ bool suits_packs(const Vehicle<double>& v) {
   // Strips in the wake meet a table's start or a stop at an angle of attack each.
   if (has_wake(v.wings) && (v.wings.coefficients.table || has_pitch_stop(v.wings))) return false;
   if (v.load_torque != 0.0 || v.voltage_offset != 0.0 || v.electronics.efficiency != 1.0) return false;
+  if (v.spring.rest_angle != 0.0) return false;
   if (v.transmission.type != TransmissionType::direct) {
     // Of two kinds of kinks beside those of the rod force lanes know one at a time.
     const bool kinks = v.wings.coefficients.table || has_pitch_stop(v.wings);

@@ -209,8 +209,8 @@ void CrankStartUp::move_state(const Scaled& by) {
     if (!pitch || !now_.held) c.*state.number += by[place] * size;
   });
   if (model_.indices.pitching && !now_.held) {
-    const double stop = model_.vehicle.pitch.hinge.stop;
-    c.pitch_angle = std::clamp(c.pitch_angle, -stop, stop);
+    const PitchHinge<double>& hinge = model_.vehicle.pitch.hinge;
+    c.pitch_angle = std::clamp(c.pitch_angle, hinge.stop_low, hinge.stop_high);
   }
   crossings_.back().state = c;
 }

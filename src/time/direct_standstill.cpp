@@ -33,7 +33,7 @@ double DirectStartUp::largest_torque() const {
 bool DirectStartUp::rests_for_good() {
   const bool no_drive = model_.vehicle.voltage == 0.0 && model_.vehicle.voltage_offset == 0.0 &&
                         std::abs(now_.moving.speed) < 1e-9 * model_.speed_scale &&
-                        std::abs(now_.moving.angle) < 1e-9 * model_.angle_scale && swing_ < 1e-9 * model_.angle_scale &&
+                        std::abs(bent()) < 1e-9 * model_.angle_scale && swing_ < 1e-9 * model_.angle_scale &&
                         wings_are_still();
   if (!now_.stuck) stuck_until_ = infinity;
   if (!now_.stuck && !no_drive) return false;

@@ -18,7 +18,7 @@ double DirectStartUp::piece_end(const TimeModel&, double stop) {
 }
 
 void DirectStartUp::step_taken(Integrator& steps, double from) {
-  swing_ = std::max(swing_, std::abs(now_.moving.angle));
+  swing_ = std::max(swing_, std::abs(bent()));
   travel_[now_.moving.angle > stroke_before_] += std::abs(now_.moving.angle - stroke_before_);
   stroke_before_ = now_.moving.angle;
   recorder_.note_current(now_.t, std::abs(now_.moving.current));
@@ -49,7 +49,7 @@ void DirectStartUp::period_done() {
   ++result_.cycles;
   event(Kind::revolution);
   swings_.push_back(swing_);
-  swing_ = std::abs(now_.moving.angle);
+  swing_ = std::abs(bent());
   if (rests_for_good() || creeps_to_rest()) return;
 
   const auto scale = model_.typical();
@@ -137,7 +137,7 @@ void DirectStartUp::give_up(StatusEvidence why) {
 TransientResult DirectStartUp::run() {
   model_.begin_piece();
   before_ = model_.coordinates_now();
-  swing_ = std::abs(now_.moving.angle);
+  swing_ = std::abs(bent());
   stroke_before_ = now_.moving.angle;
   recorder_.start(std::abs(now_.moving.current));
   recorder_.sample({now_.t, now_.moving.angle, now_.moving.speed, now_.moving.current});

@@ -32,7 +32,10 @@ class DirectStartUp : public StartUpRun {
   double last_off_ = infinity;    ///< how far the last period was from the orbit, relative
   double last_apart_ = infinity;  ///< that, or how far the last metrics were from those before them
   int periods_at_tightest_ = 0;
-  double swing_ = 0.0;  ///< largest |beta| of this period at the ends of steps
+  /// How far the springs are bent [rad].
+  double bent() const { return now_.moving.angle - model_.vehicle.spring.rest_angle; }
+
+  double swing_ = 0.0;  ///< largest |bent()| of this period at the ends of steps
   std::vector<double> swings_;
   double stroke_before_ = 0.0;
   double travel_[2] = {}, last_travel_ = infinity;  ///< of this period: backwards, forwards; the longer of the last

@@ -38,6 +38,8 @@ StartUpRun::StartUpRun(const Vehicle<double>& vehicle, const Supply<double>& sup
   require(std::isfinite(c.pitch_velocity), "transient.pitch_velocity", "must be finite", "rad/s", c.pitch_velocity);
   require(std::isfinite(c.current), "transient.current", "must be finite", "A", c.current);
 
+  const bool given = c.angle != 0.0 || c.speed != 0.0;
+  if (!given && model_.direct) options_.start.angle = vehicle.spring.rest_angle;
   model_.start(options_.start);
   const Vehicle<double>& v = model_.vehicle;
   const double current = model_.current_scale, speed = model_.speed_scale, K = v.motor.torque_constant;

@@ -138,7 +138,9 @@ void TimeModel::scale_direct(double highest_voltage) {
   const DirectBalance balance = direct_balance(at_highest);
   drive_torque = balance.drive_torque;
   time_scale = 1.0 / vehicle.drive_frequency;
-  const double w = two_pi * vehicle.drive_frequency, inertia = smallest_inertia, beta = std::abs(start_.angle);
+  const double w = two_pi * vehicle.drive_frequency, inertia = smallest_inertia,
+               from_rest = start_.angle - vehicle.spring.rest_angle;
+  const double beta = std::abs(from_rest);
   const double natural = std::max(w, std::sqrt(vehicle.wing_count * vehicle.spring.stiffness / inertia));
   speed_scale = balance.responses.empty()
                     ? std::max(0.0, balance.drive_torque - balance.breakaway_torque) / (inertia * w)

@@ -191,7 +191,11 @@ std::optional<TransientEvent::Kind> TimeModel::event_at(std::size_t indicator) c
 }
 
 bool TimeModel::branch_lost() {
-  if (indices.pitching && !now.held && std::abs(now.moving.pitch_angle) > vehicle.pitch.hinge.stop * (1.0 + 1e-9)) {
+  const auto passed_stop = [&] {
+    const double psi = now.moving.pitch_angle, side = side_of_stop(vehicle.pitch.hinge, psi);
+    return side * psi > side * nearer_stop(vehicle.pitch.hinge, psi) * (1.0 + 1e-9);
+  };
+  if (indices.pitching && !now.held && passed_stop()) {
     meet_stop();
     return true;
   }
@@ -223,16 +227,16 @@ bool TimeModel::branch_lost() {
 }
 
 void TimeModel::resume() {
-  const double side = sign_of(now.moving.pitch_angle);
-  if (indices.pitching && !now.held && side * now.moving.pitch_angle >= vehicle.pitch.hinge.stop &&
+  const double side = side_of_stop(vehicle.pitch.hinge, now.moving.pitch_angle);
+  const double stop = nearer_stop(vehicle.pitch.hinge, now.moving.pitch_angle);
+  if (indices.pitching && !now.held && side * now.moving.pitch_angle >= side * stop &&
       side * now.moving.pitch_velocity > 0.0) {
     meet_stop();
   }
 }
 
 void TimeModel::meet_stop() {
-  const double side = sign_of(now.moving.pitch_angle);
-  now.moving.pitch_angle = side * vehicle.pitch.hinge.stop;
+  now.moving.pitch_angle = nearer_stop(vehicle.pitch.hinge, now.moving.pitch_angle);
   now.held = true;
   if (uniqueness_now() <= smallest_margin) {
     now.jammed = true;
@@ -285,7 +289,10 @@ void TimeModel::settle_pitch() {
 double TimeModel::stop_room(const double* y, const PitchMotion<double>& motion) const {
   const PitchHinge<double>& hinge = vehicle.pitch.hinge;
   const double psi = y[indices.pitch];
-  if (!now.held) return has_stop(hinge) ? (hinge.stop - std::abs(psi)) / hinge.stop : 1.0;
+  if (!now.held) {
+    if (!has_stop(hinge)) return 1.0;
+    return side_of_stop(hinge, psi) * (nearer_stop(hinge, psi) - psi) / (0.5 * (hinge.stop_high - hinge.stop_low));
+  }
   return holding_margin(hinge, psi, motion.stop_moment) /
          (vehicle.pitch.pitch_inertia * speed_scale * pitch_velocity_scale);
 }

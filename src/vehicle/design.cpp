@@ -32,6 +32,9 @@ void validate_hinge_offset(const Design<double>& d) {
 
 /// What a direct drive needs and cannot have.
 void validate_direct(const Design<double>& d) {
+  if (d.spring.rest_angle && !has_springs(d)) {
+    throw ParameterError(spring_key::rest_angle.path, "there are no springs to be at rest: give spring.stiffness");
+  }
   if (!is_sine(d.supply.type)) {
     throw ParameterError("supply.type", "a direct drive swings as its supply does: expected sine or battery-sine");
   }
@@ -197,6 +200,10 @@ void validate_pitching(const Design<double>& d, const Vehicle<double>& v) {
     throw ParameterError(
         "aerodynamics.coefficients",
         std::string(set->name) + " is for wings that pitch on a hinge; give pitch.stiffness, or translational-2022");
+  }
+  if (d.pitch.stop_low.has_value() != d.pitch.stop_high.has_value()) {
+    throw ParameterError(d.pitch.stop_low ? pitch_key::stop_high.path : pitch_key::stop_low.path,
+                         "missing: give both stop_low and stop_high, or stop to either side alike");
   }
   const char* key = d.pitch.stiffness ? pitch_key::stiffness.path : torsion_key::stiffness.path;
   if (d.wing.planform.shape == PlanformShape::moments) {

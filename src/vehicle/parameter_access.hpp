@@ -187,6 +187,17 @@ constexpr Parameter<S> alternative(const ParameterText& text, Access, Others...)
           [](const Design<S>& d) -> std::optional<S> { return Access{}(d); }};
 }
 
+/// alternative() that a design does not have where it has no place.
+template <Scalar S, class Where, class Access, class... Others>
+constexpr Parameter<S> placed_alternative(const ParameterText& text, Access access, Others... others) {
+  Parameter<S> parameter = alternative<S, Where>(text, access, others...);
+  parameter.get = [](const Design<S>& d) -> std::optional<S> {
+    if (!Where::holds(d)) return std::nullopt;
+    return Access{}(d);
+  };
+  return parameter;
+}
+
 /// A plain number that optional ones replace.
 template <Scalar S, class Where = Everywhere, class Access, class... Others>
 constexpr Parameter<S> replaceable(const ParameterText& text, Access, Others...) {

@@ -49,6 +49,9 @@ constexpr auto wing_rows() {
   constexpr auto areal_density = [](auto& d) -> auto& { return d.wing.areal_density; };
   constexpr auto chord_ratio = [](auto& d) -> auto& { return d.wing.planform.chord_ratio; };
   constexpr auto angle_of_attack = [](auto& d) -> auto& { return d.aerodynamics.angle_of_attack; };
+  constexpr auto stop = [](auto& d) -> auto& { return d.pitch.stop; };
+  constexpr auto stop_low = [](auto& d) -> auto& { return d.pitch.stop_low; };
+  constexpr auto stop_high = [](auto& d) -> auto& { return d.pitch.stop_high; };
   using D = Design<S>;
   return std::array{
       choice<S, TransmissionChoice>(
@@ -132,10 +135,10 @@ constexpr auto wing_rows() {
           row(friction_key::quadratic, "required", "c_f: T_f = c_f omega abs(omega)")),
       friction_number<S, FrictionLaw::constant>(row(friction_key::torque, "required", "T_c: T_f = T_c sign(omega)")),
 
-      alternative<S>(
-          row(spring_key::stiffness, "required", "k, stiffness of one hinge spring, at rest at stroke angle zero",
-              {"resonance", "resonance_ratio"}),
-          stiffness, resonance, spring_ratio),
+      alternative<S>(row(spring_key::stiffness, "required",
+                         "k, stiffness of one hinge spring, at rest at stroke angle zero or at rest_angle",
+                         {"resonance", "resonance_ratio"}),
+                     stiffness, resonance, spring_ratio),
       alternative<S>(
           {"spring.resonance",
            "Hz",
@@ -153,6 +156,10 @@ constexpr auto wing_rows() {
                               "tunes the springs to the supply",
                               {"stiffness", "resonance"}},
                              spring_ratio, stiffness, resonance),
+      number<S, Direct>(row(spring_key::rest_angle, "0 rad",
+                            "beta_0, stroke angle at which the hinge springs are at rest, positive forward: the middle "
+                            "of the stroke without a mean voltage"),
+                        [](auto& d) -> auto& { return d.spring.rest_angle; }),
       number<S, WeighedSprings>({"spring.mass", "kg", range::not_negative, "none: in vehicle.mass",
                                  "mass of one hinge spring, in addition to vehicle.mass; one for each wing"},
                                 [](auto& d) -> auto& { return d.masses.spring; }),
@@ -256,9 +263,19 @@ constexpr auto wing_rows() {
                 [](auto& d) -> auto& { return d.pitch.stiffness; }),
       number<S, Pitching>(row(pitch_key::damping, "0 N m s/rad", "c_psi of one hinge"),
                           [](auto& d) -> auto& { return d.pitch.damping; }),
-      number<S, Pitching>(
-          row(pitch_key::stop, "none", "psi_max, pitch angle to either side at which stops hold the wing"),
-          [](auto& d) -> auto& { return d.pitch.stop; }),
+      placed_alternative<S, Pitching>(
+          row(pitch_key::stop, "none", "psi_max, pitch angle to either side at which stops hold the wing",
+              {"stop_low", "stop_high"}),
+          stop, stop_low, stop_high),
+      placed_alternative<S, Pitching>(
+          row(pitch_key::stop_low, "none",
+              "of stops that differ, the lower: psi goes no lower; the trailing edge is behind a wing that swings forward "
+              "then",
+              {"stop"}),
+          stop_low, stop),
+      placed_alternative<S, Pitching>(
+          row(pitch_key::stop_high, "none", "of stops that differ, the upper: psi goes no higher", {"stop"}), stop_high,
+          stop),
       number<S, Pitching>(row(pitch_key::friction, "0 N m", "T_psi, constant friction of one hinge's joint"),
                           [](auto& d) -> auto& { return d.pitch.friction; }),
       text<S, Pitching>({"pitch.rotational_lift",

@@ -26,7 +26,7 @@ PitchCrank pitch_crank(double stiffness, double stop = infinity, double friction
   Vehicle<double> v = resolve(d);
   v.wings = hinged.wings;
   v.pitch = hinged.pitch;
-  v.pitch.hinge.stop = stop;
+  set_stops(v.pitch.hinge, stop);
   return {v, {138.0, 0.1, 0.5, 60.0}, 1.0};
 }
 

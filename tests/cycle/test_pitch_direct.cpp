@@ -162,20 +162,20 @@ TEST(PitchDirect, StopsHoldTheWingsAndTakeTheEnergyOfImpacts) {
   double largest = 0.0;
   for (const auto& step : pitch_orbit(pitch_system(v), 1e-8).cycle.steps)
     largest = std::max(largest, std::abs(step.y[PitchSystem::pitch]));
-  v.pitch.hinge.stop = 0.7 * largest;
+  set_stops(v.pitch.hinge, 0.7 * largest);
   for (const double tolerance : {1e-6, 1e-10}) {
     const PitchOrbit orbit = pitch_orbit(pitch_system(v), tolerance);
     int held = 0, impacts = 0;
     for (std::size_t n = 0; n < orbit.cycle.steps.size(); ++n) {
       const auto& step = orbit.cycle.steps[n];
-      EXPECT_LE(std::abs(step.y[PitchSystem::pitch]), v.pitch.hinge.stop * (1.0 + 1e-9));
+      EXPECT_LE(std::abs(step.y[PitchSystem::pitch]), v.pitch.hinge.stop_high * (1.0 + 1e-9));
       held += step.signs[PitchSystem::held] < 0.0;
       EXPECT_TRUE(step.signs[PitchSystem::held] > 0.0 || step.y[PitchSystem::pitch + 1] == 0.0);
       if (n > 0) impacts += step.signs[PitchSystem::impacts] != orbit.cycle.steps[n - 1].signs[PitchSystem::impacts];
     }
     const PitchMetrics m = pitch_metrics(orbit.system, orbit.cycle);
-    EXPECT_NEAR(m.amplitude, v.pitch.hinge.stop, 1e-12);
-    EXPECT_NEAR(m.angle_of_attack_min, 0.5 * pi - v.pitch.hinge.stop, 1e-12);
+    EXPECT_NEAR(m.amplitude, v.pitch.hinge.stop_high, 1e-12);
+    EXPECT_NEAR(m.angle_of_attack_min, 0.5 * pi - v.pitch.hinge.stop_high, 1e-12);
     EXPECT_GT(held, 2);
     EXPECT_GE(impacts, 2);
     EXPECT_GT(impact_loss(orbit.system, orbit.cycle), 1e-4 * orbit.total(Integral::electrical_work));
@@ -188,7 +188,7 @@ TEST(PitchDirect, StopsHoldTheWingsAndTakeTheEnergyOfImpacts) {
 // included, its mean is that of the momentum times psi' cos(psi).
 TEST(PitchDirect, MeanLiftHasTheImpulsesOfImpacts) {
   Vehicle<double> v = pitching_vehicle(2e-4);
-  v.pitch.hinge.stop = 0.5;
+  set_stops(v.pitch.hinge, 0.5);
   const PitchOrbit orbit = pitch_orbit(pitch_system(v), 1e-10);
   const PitchSystem& system = orbit.system;
   double expected = 0.0, without_impacts = 0.0;
@@ -213,7 +213,7 @@ TEST(PitchDirect, MeanLiftHasTheImpulsesOfImpacts) {
 // The saltation matrix of impacts, against two iterates from starts a little apart.
 TEST(PitchDirect, DerivativeOfTheReturnMapCrossesImpacts) {
   Vehicle<double> v = pitching_vehicle(2e-4);
-  v.pitch.hinge.stop = 0.5;
+  set_stops(v.pitch.hinge, 0.5);
   const PitchSystem system = pitch_system(v);
   const auto cycle =
       expect_return_map_derivative(system, {0.3, -20.0, 0.05, 0.1, 10.0}, {1e-4, 1e-2, 1e-4, 1e-4, 1e-2}, 3e-4);

@@ -360,7 +360,7 @@ TEST(PitchingWings, RefusesWhatNoWingIs) {
   EXPECT_EQ(refused([](P&) {}), "no error");
   EXPECT_EQ(refused([](P& p) { p.hinge.stiffness = -1e-4; }), "pitch.stiffness: must be >= 0 [N m/rad], got -0.0001");
   EXPECT_EQ(refused([](P& p) { p.hinge.damping = -1e-7; }), "pitch.damping: must be >= 0 [N m s/rad], got -1e-07");
-  EXPECT_EQ(refused([](P& p) { p.hinge.stop = -0.1; }), "pitch.stop: must be > 0 and < pi [rad], got -0.1");
+  EXPECT_EQ(refused([](P& p) { set_stops(p.hinge, -0.1); }), "pitch.stop: must be > 0 and < pi [rad], got -0.1");
   EXPECT_EQ(refused([](P& p) { p.hinge.friction = -1e-6; }), "pitch.friction: must be >= 0 [N m], got -1e-06");
   EXPECT_EQ(refused([](P& p) { p.pitch_inertia = 0.0; }), "wing.pitch_inertia: must be > 0 [kg m2], got 0");
   EXPECT_EQ(refused([](P& p) { p.damping_coefficient = -5.0; }), "pitch.damping_coefficient: must be >= 0 [1], got -5");
@@ -369,6 +369,28 @@ TEST(PitchingWings, RefusesWhatNoWingIs) {
   EXPECT_EQ(refused([](P& p) { p.mass_product = -4e-8; }),
             "wing.mass_product: no wing has that much: its square must be below wing.inertia times "
             "wing.pitch_inertia, |P| < 3.395e-08 of 4e-08 kg m2 in all wings");
+}
+
+// The nearer stop is that of the half of the range in which the wings are, not that of the sign of their pitch.
+TEST(PitchHinge, StopsMayDifferToEitherSide) {
+  PitchHinge<double> h;
+  EXPECT_FALSE(has_stop(h));
+  h.stop_low = -0.1;
+  h.stop_high = 0.45;
+  EXPECT_EQ(nearer_stop(h, 0.14), -0.1);
+  EXPECT_EQ(nearer_stop(h, 0.18), 0.45);
+  for (const double between : {-0.0999, 0.0, 0.14, 0.18, 0.4499}) EXPECT_FALSE(is_at_stop(h, between)) << between;
+  for (const double beyond : {-0.2, -0.1, 0.45, 0.5}) EXPECT_TRUE(is_at_stop(h, beyond)) << beyond;
+  EXPECT_EQ(farther_stop(h), 0.45);
+  EXPECT_EQ(closer_stop(h), 0.1);
+  // At the upper stop a moment towards a larger pitch presses on it, at the lower one the opposite.
+  EXPECT_EQ(holding_margin(h, 0.45, 2e-3), 2e-3);
+  EXPECT_EQ(holding_margin(h, -0.1, 2e-3), -2e-3);
+  EXPECT_EQ(leaving_side(h, 0.45, -1e-3), -1.0);
+  EXPECT_EQ(leaving_side(h, -0.1, 1e-3), 1.0);
+  set_stops(h, 0.3);
+  EXPECT_EQ(nearer_stop(h, 0.0), 0.3);
+  EXPECT_EQ(nearer_stop(h, -1e-9), -0.3);
 }
 
 }  // namespace

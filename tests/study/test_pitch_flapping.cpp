@@ -40,7 +40,7 @@ TEST(PitchFlapping, DesignGivesTheWingsOfItsDrawing) {
   EXPECT_DOUBLE_EQ(v.pitch.pitch_inertia, 2.0 * one.pitch_inertia);
   EXPECT_DOUBLE_EQ(v.pitch.mass_product, 2.0 * one.mass_product);
   EXPECT_DOUBLE_EQ(v.pitch.hinge.stiffness, 6e-4);
-  EXPECT_EQ(v.pitch.hinge.stop, 0.7);
+  EXPECT_EQ(v.pitch.hinge.stop_high, 0.7);
   EXPECT_GT(v.pitch.air.rr, 0.0);
   d.aerodynamics.added_mass = false;
   d.pitch.rotational_lift = false;

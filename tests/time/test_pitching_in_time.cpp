@@ -28,7 +28,7 @@ TEST(PitchingInTime, ReachesTheOrbitFromRest) {
   using System = PitchDirectSystem<double, 5>;
   for (const double stop : {infinity, 0.5}) {
     Vehicle<double> v = pitching_vehicle(2e-4);
-    v.pitch.hinge.stop = stop;
+    set_stops(v.pitch.hinge, stop);
     const System system{v, {0.5, 60.0, 0.1, 0.5, 60.0}};
     solver::Iterate<System> cycle;
     const auto found = solver::solve_periodic(system, {}, {.tolerance = 1e-10, .max_steps = 2000}, cycle);
@@ -82,7 +82,7 @@ TEST(PitchingInTime, FreeSwingKeepsItsEnergy) {
     v.motor.viscous_damping = v.friction.damping = v.pitch.hinge.damping = 0.0;
     v.motor.armature_inductance = 0.0;
     v.motor.armature_resistance = 1e15;
-    v.pitch.hinge.stop = stop;
+    set_stops(v.pitch.hinge, stop);
     TimeModel model(v, {});
     model.start({0.8, 0.0, 0.0, 0.3, 100.0});
     const double before = model.stored_energy();
@@ -95,7 +95,7 @@ TEST(PitchingInTime, FreeSwingKeepsItsEnergy) {
 // Bit-identical from a saved state.
 TEST(PitchingInTime, RepeatsFromASavedState) {
   Vehicle<double> v = pitching_vehicle(2e-4);
-  v.pitch.hinge.stop = 0.5;
+  set_stops(v.pitch.hinge, 0.5);
   TimeModel model(v, {});
   model.start({});
   ASSERT_EQ(step_to(model, 2.3 * model.time_scale, 1e-9), StepOutcome::reached);

@@ -89,7 +89,7 @@ std::vector<Simulation> one_of_each() {
   swinging.motor.friction_torque = 1e-4;
   Vehicle<double> pitching_crank = reference_vehicle();
   pitching_crank.pitch = pitching_vehicle(2e-4).pitch;
-  pitching_crank.pitch.hinge.stop = 0.5;
+  set_stops(pitching_crank.pitch.hinge, 0.5);
   for (const Vehicle<double>& v : {reference_vehicle(true), without_inductance(swinging), swinging, pitching_crank}) {
     all.emplace_back(v, three_volts);
     all.emplace_back(v, Supply<double>{SupplyType::pwm, 4.0, 500.0, 0.75});
@@ -180,7 +180,7 @@ TEST(SteppedSimulation, TellsWhatHappens) {
   EXPECT_EQ(jams.time(), end);
 
   Vehicle<double> stopped = pitching_vehicle(2e-4);
-  stopped.pitch.hinge.stop = 0.5;
+  set_stops(stopped.pitch.hinge, 0.5);
   Simulation hinged(stopped);
   int impacts = 0;
   for (const TransientEvent& e : hinged.step_to(0.3)) impacts += e.kind == Kind::stop_impact;

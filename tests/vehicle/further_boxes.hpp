@@ -145,7 +145,7 @@ inline WideVehicle drawn_further_vehicle(FurtherBox box, std::uint32_t n, std::u
       if (chance(0.4)) d.piezo.series_stiffness = d.piezo.constants.stiffness * logarithmic(2.0, 20.0);
       if (chance(0.3)) d.piezo.constants.voltage_factor = logarithmic(1e-4, 3e-3);
       d.motor = {};
-      d.spring = {v.spring.stiffness, {}, {}};
+      d.spring = {v.spring.stiffness, {}, {}, {}};
       d.wing.resonance.reset();
       if (!d.wing.areal_density) d.wing.inertia = v.wing_inertia;
       d.supply = {SupplyType::sine, V, v.drive_frequency, 1.0, {}, chance(0.5) ? uniform(0.0, V) : 0.0};

@@ -17,7 +17,7 @@ inline Design<double> piezo_design() {
   d.piezo.constants.mass = 6e-6;
   d.piezo.constants.transmission_ratio = 2666.6;
   d.supply = {SupplyType::sine, 90.0, 150.0, 1.0, {}, 90.0};
-  d.spring = {30e-6, {}, {}};
+  d.spring = {30e-6, {}, {}, {}};
   d.wing.count = 1.0;
   d.wing.planform.length = 12.42e-3;
   d.wing.planform.root_chord = 5.58e-3;

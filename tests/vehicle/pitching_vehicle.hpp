@@ -43,7 +43,7 @@ inline Vehicle<double> random_pitching_vehicle(std::mt19937_64& random, bool sto
   v.pitch.mass_product *= uniform(-0.5, 1.2);
   v.pitch.hinge.damping *= std::exp(uniform(-3.0, 3.0));
   if (uniform(0.0, 1.0) < 0.3) v.pitch.rotational_coefficient = 0.0;
-  if (stops) v.pitch.hinge.stop = uniform(0.05, 0.6);
+  if (stops) set_stops(v.pitch.hinge, uniform(0.05, 0.6));
   return v;
 }
 

@@ -36,6 +36,9 @@ inline constexpr ParameterRange efficiency{"> 0, <= 1", "must be > 0 and <= 1", 
 inline constexpr ParameterRange acute{"> 0, < pi/2", "must lie between 0 and pi/2", 0.0, pi / 2.0, true, true};
 inline constexpr ParameterRange zero_to_acute{">= 0, < pi/2", "must be >= 0 and < pi/2", 0.0, pi / 2.0, false, true};
 inline constexpr ParameterRange below_straight{"> 0, < pi", "must be > 0 and < pi", 0.0, pi, true, true};
+inline constexpr ParameterRange above_minus_straight{"< 0, > -pi", "must be < 0 and > -pi", -pi, 0.0, true, true};
+inline constexpr ParameterRange within_right_angle{
+    "> -pi/2, < pi/2", "must lie between -pi/2 and pi/2", -pi / 2.0, pi / 2.0, true, true};
 inline constexpr ParameterRange count{
     "whole number >= 1", "must be a whole number >= 1", 1.0, endless, false, false, true};
 inline constexpr ParameterRange at_most_thousand{

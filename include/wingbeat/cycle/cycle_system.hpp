@@ -345,7 +345,8 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
       else return {place, y[shaft], i, v_t};
     } else {
       const Configuration<S> here{direct_kinematics(vehicle.transmission.direct),
-                                  vehicle.wing_count * vehicle.spring.stiffness * y[0], y[0]};
+                                  vehicle.wing_count * vehicle.spring.stiffness * (y[0] - vehicle.spring.rest_angle),
+                                  y[0]};
       const S omega = value_of(signs[slip]) < 0.0 ? S(0.0) : y[shaft];
       const S i = current(place, y), v_t = terminal_voltage(vehicle, voltage(place), i);
       if constexpr (on_hinges) return {here, omega, i, v_t, y[pitch], pitch_velocity(y, signs)};

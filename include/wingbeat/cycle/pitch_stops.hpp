@@ -16,8 +16,13 @@ namespace wingbeat::pitch_stops {
 
 /// At which stop the wings are, or nearer to which: +1 or -1.
 template <class System>
-typename System::Real side(const typename System::State& y) {
-  return typename System::Real(value_of(y[System::pitch]) >= 0.0 ? 1.0 : -1.0);
+typename System::Real side(const System& system, const typename System::State& y) {
+  return typename System::Real(side_of_stop(system.vehicle.pitch.hinge, y[System::pitch]));
+}
+/// How far they are from it [rad].
+template <class System>
+typename System::Real room_to_stop(const System& system, const typename System::State& y) {
+  return nearer_stop(system.vehicle.pitch.hinge, y[System::pitch]) - y[System::pitch];
 }
 
 template <class System>
@@ -34,7 +39,7 @@ typename System::Real switch_of(const System& system, const PitchMotion<typename
   const PitchHinge<S>& hinge = system.vehicle.pitch.hinge;
   if (!system.jumps(System::stop) || is_clamped(hinge)) return S(1.0);
   if (is_held<System>(signs)) return holding_margin<S>(hinge, y[System::pitch], m.stop_moment);
-  return has_stop(hinge) ? S(hinge.stop - side<System>(y) * y[System::pitch]) : S(1.0);
+  return has_stop(hinge) ? S(side(system, y) * room_to_stop(system, y)) : S(1.0);
 }
 
 /// True of a state with which a recorded cycle may begin with wings that something holds.
@@ -42,7 +47,8 @@ template <class System>
 bool rests(const System& system, const typename System::State& y) {
   const auto& hinge = system.vehicle.pitch.hinge;
   return value_of(y[System::pitch + 1]) == 0.0 &&
-         (has_friction(hinge) || (has_stop(hinge) && std::abs(value_of(y[System::pitch])) >= value_of(hinge.stop)));
+         (has_friction(hinge) ||
+          (has_stop(hinge) && value_of(side(system, y)) * value_of(room_to_stop(system, y)) <= 0.0));
 }
 
 /// Decides whether wings that rest are held.
@@ -52,7 +58,7 @@ void hold_or_leave(const System& system, const typename System::Real& x, const t
   using S = typename System::Real;
   const PitchHinge<S>& hinge = system.vehicle.pitch.hinge;
   signs[System::held] = S(-1.0);
-  if (is_at_stop<S>(hinge, y[System::pitch])) signs[System::turn] = -side<System>(y);
+  if (is_at_stop<S>(hinge, y[System::pitch])) signs[System::turn] = -side(system, y);
   // An impact may have turned them over.
   solver::settle_signs(system, x, y, signs);
   const S moment = system.motion(x, y, signs).stop_moment;
@@ -67,7 +73,7 @@ template <class System>
 typename System::State after_impact(const System& system, const typename System::Real& x, typename System::State y,
                                     const typename System::Signs& signs, typename System::Quadrature* totals) {
   using S = typename System::Real;
-  y[System::pitch] = side<System>(y) * system.vehicle.pitch.hinge.stop;
+  y[System::pitch] = nearer_stop(system.vehicle.pitch.hinge, y[System::pitch]);
   auto instant = system.instant_before_impact(x, y, signs);
   Mode<S> mode = System::mode(signs);
   meet_stop(system.vehicle, &instant, &mode, [&](const StopImpact<S>& impact) {
@@ -117,7 +123,7 @@ void reset_map(const System& system, const typename System::Real& x, typename Sy
   using S = typename System::Real;
   if (has_impact<System>(from, to)) {
     const auto before = system.template rates<quadratures>(x, y, from);
-    const S late = (side<System>(y) * system.vehicle.pitch.hinge.stop - y[System::pitch]) / before.dy[System::pitch];
+    const S late = room_to_stop(system, y) / before.dy[System::pitch];
     for (std::size_t n = 0; n < y.size(); ++n) y[n] = y[n] + before.dy[n] * late;
     y = after_impact(system, S(x + late), y, from, quadratures ? totals : nullptr);
     const auto after = system.template rates<quadratures>(S(x + late), y, to);
@@ -136,7 +142,7 @@ void reset_map(const System& system, const typename System::Real& x, typename Sy
   if (turned)
     detail::cross_at_zero<quadratures>(system, x, y, System::pitch + 1, S(y[System::pitch + 1]), from, to, totals);
   if (!holds) return;
-  if (is_at_stop<S>(hinge, y[System::pitch])) y[System::pitch] = side<System>(y) * hinge.stop;
+  if (is_at_stop<S>(hinge, y[System::pitch])) y[System::pitch] = nearer_stop(hinge, y[System::pitch]);
   y[System::pitch + 1] = S(0.0);
 }
 

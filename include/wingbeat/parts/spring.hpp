@@ -1,4 +1,4 @@
-// Torsional spring at each wing hinge, at rest at stroke angle zero; model.md eqs (21, 22).
+// Torsional spring at each wing hinge; model.md eqs (21, 22).
 #pragma once
 
 #include <cmath>
@@ -12,34 +12,40 @@ namespace wingbeat {
 
 template <Scalar S>
 struct HingeSpring {
-  S stiffness = S(0);  ///< k of ONE hinge spring [N m/rad], >= 0
+  S stiffness = S(0);   ///< k of ONE hinge spring [N m/rad], >= 0
+  S rest_angle = S(0);  ///< \f$\beta_0\f$, stroke angle at which it is at rest [rad]; 0 of a crank's
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
-    return use(self.stiffness);
+    return use(self.stiffness, self.rest_angle);
   }
 };
 
 /// Keys, units and ranges; the table of parameters has them from here.
 namespace spring_key {
 inline constexpr ParameterKey stiffness{"spring.stiffness", "N m/rad", range::not_negative};
+inline constexpr ParameterKey rest_angle{"spring.rest_angle", "rad", range::within_right_angle};
 }  // namespace spring_key
 
-inline void validate(const HingeSpring<double>& s) { require(spring_key::stiffness, s.stiffness); }
+inline void validate(const HingeSpring<double>& s) {
+  require(spring_key::stiffness, s.stiffness);
+  require(spring_key::rest_angle, s.rest_angle);
+}
 
 template <Scalar S>
 struct SpringLoads {
-  S moment;  ///< \f$k \beta\f$ [N m], returns the wing to stroke angle zero
-  S energy;  ///< \f$\tfrac12 k \beta^2\f$ [J]
+  S moment;  ///< [N m], returns the wing to the rest angle
+  S energy;  ///< [J]
 };
 
 /// Moment and energy of ONE hinge spring at the stroke angle \f$\beta\f$ [rad] (eq 21):
 /// \f[
-/// M_\mathrm{s} = k \beta, \qquad E_\mathrm{s} = \tfrac12 k \beta^2
+/// M_\mathrm{s} = k (\beta - \beta_0), \qquad E_\mathrm{s} = \tfrac12 k (\beta - \beta_0)^2
 /// \f]
 template <Scalar S>
 SpringLoads<S> spring_loads(const HingeSpring<S>& s, const S& beta) {
-  return {s.stiffness * beta, S(0.5) * s.stiffness * square(beta)};
+  const S bent = beta - s.rest_angle;
+  return {s.stiffness * bent, S(0.5) * s.stiffness * square(bent)};
 }
 
 /// Stiffness k [N m/rad] that makes a wing of inertia J_w [kg m2] resonate at f_s [Hz] (eq 22). A direct drive swings

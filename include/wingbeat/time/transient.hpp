@@ -33,7 +33,7 @@ struct TransientOptions {
   long max_steps = 2000000;
 
   /// How everything is at the start; a negative crank speed turns backwards, without inductance the current follows
-  /// from the voltage instead.
+  /// from the voltage instead. Without angle and speed a direct drive starts where its springs are at rest.
   Coordinates<double> start = {};
 
   bool record = false;           ///< keep samples (and events of supply switching)

@@ -147,10 +147,11 @@ struct SpringDesign {
   /// f_s)^2
   std::optional<S> resonance;
   std::optional<S> resonance_ratio;  ///< direct: resonance over drive frequency [1]
+  std::optional<S> rest_angle;       ///< direct: beta_0 [rad]; 0 unless given
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
-    return use(self.stiffness, self.resonance, self.resonance_ratio);
+    return use(self.stiffness, self.resonance, self.resonance_ratio, self.rest_angle);
   }
 };
 
@@ -195,9 +196,11 @@ struct WingDesign {
 /// stiffness is given.
 template <Scalar S>
 struct PitchDesign {
-  std::optional<S> stiffness;    ///< k_psi of one hinge [N m/rad]
-  S damping = S(0);              ///< c_psi of one hinge [N m s/rad]
-  std::optional<S> stop;         ///< psi_max [rad]; none unless given
+  std::optional<S> stiffness;  ///< k_psi of one hinge [N m/rad]
+  S damping = S(0);            ///< c_psi of one hinge [N m s/rad]
+  std::optional<S> stop;       ///< psi_max to either side [rad]; none unless given
+  /// In place of `stop`, both: psi goes no lower, and no higher [rad].
+  std::optional<S> stop_low, stop_high;
   bool rotational_lift = true;   ///< the force that a pitching wing's circulation adds; see rotation_with()
   S damping_coefficient = S(0);  ///< C_rd [1]; see rotation_with()
   S edge_suction = S(0);         ///< s_L of the added mass [1]
@@ -207,8 +210,8 @@ struct PitchDesign {
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
-    return use(self.stiffness, self.damping, self.stop, self.rotational_lift, self.damping_coefficient,
-               self.edge_suction, self.friction, self.axis, self.centre_of_pressure);
+    return use(self.stiffness, self.damping, self.stop, self.stop_low, self.stop_high, self.rotational_lift,
+               self.damping_coefficient, self.edge_suction, self.friction, self.axis, self.centre_of_pressure);
   }
 };
 

@@ -20,7 +20,8 @@ Configuration<S> configuration_at_angle(const Vehicle<S>& v, const S& angle) {
   using std::cos;
   using std::sin;
   if (drive_of(v).rotates) return configuration_at(v, S(sin(angle)), S(cos(angle)));
-  return {direct_kinematics(v.transmission.direct), v.wing_count * v.spring.stiffness * angle, angle};
+  return {direct_kinematics(v.transmission.direct), v.wing_count * v.spring.stiffness * (angle - v.spring.rest_angle),
+          angle};
 }
 
 /// The instant at these coordinates under the supply, in a mode of which `held`, `slip` and the electronics' branch
@@ -296,7 +297,8 @@ template <Scalar S>
 S wing_energy(const Vehicle<S>& v, const Coordinates<S>& place) {
   const CrankKinematics<S> k = configuration_at_angle(v, place.angle).kinematics;
   if (drive_of(v).rotates) return wing_energy(v, k, S(k.stroke_slope * place.speed));
-  return S(0.5) * v.wing_count * (v.wing_inertia * square(place.speed) + v.spring.stiffness * square(place.angle));
+  return S(0.5) * v.wing_count *
+         (v.wing_inertia * square(place.speed) + v.spring.stiffness * square(S(place.angle - v.spring.rest_angle)));
 }
 
 /// Energy beside wing_energy() of wings at the stroke velocity beta' [rad/s]: of the air that moves with them and,

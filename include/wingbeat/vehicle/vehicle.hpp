@@ -100,8 +100,9 @@ PitchingWings<S> pitching_wings_of(const Design<S>& design, const S& count, cons
   const TorsionDesign<S>& torsion = design.wing.torsion;
   PitchingWings<S> wings;
   PitchHinge<S> hinge{p.stiffness ? *p.stiffness : S(0.0), p.damping};
-  if (p.stop) hinge.stop = *p.stop;
-  if (!p.stiffness) hinge.stop = S(0.0);
+  if (p.stop) set_stops(hinge, *p.stop);
+  if (p.stop_low && p.stop_high) hinge.stop_low = *p.stop_low, hinge.stop_high = *p.stop_high;
+  if (!p.stiffness) set_stops(hinge, S(0.0));
   if (p.stiffness) hinge.friction = p.friction;
   wings.hinge = hinges_together(hinge, count);
   if (torsion.stiffness) {
@@ -270,6 +271,7 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   }
   v.wing_inertia = wings ? wing_inertia : S(0.0);
   v.spring.stiffness = wings ? stiffness : S(0.0);
+  if (design.spring.rest_angle && wings && direct) v.spring.rest_angle = *design.spring.rest_angle;
 
   const bool air = condition == Condition::air;
   const ChordMoments<S> moments = chord_moments(design.wing.planform, design.wing.count);
