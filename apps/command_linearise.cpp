@@ -12,6 +12,7 @@
 #include "wingbeat/files/control_file.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/report/control_report.hpp"
+#include "wingbeat/report/two_sides_report.hpp"
 
 namespace wingbeat::app {
 namespace {
@@ -32,6 +33,22 @@ void write_models(const ControlModels& models, OutputFile& output, const std::st
   output.commit();
 }
 
+/// Of a vehicle whose sides differ the static maps.
+int map_sides(const TwoSides& sides, const LineariseArguments& arguments, const ControlOptions& options) {
+  for (const auto& [option, text] : {std::pair("-o", &arguments.output), std::pair("--plot", &arguments.plot)}) {
+    if (!text->empty()) {
+      throw InputError(option, 0, 0, "",
+                       "of a vehicle whose sides differ there are static maps alone; --json has them");
+    }
+  }
+  const TwoSidesMaps found = two_sides_maps(sides, options);
+  print(arguments.json ? json_two_sides_maps(found, version) : text_two_sides_maps(found));
+  if (!found.maps.empty() || arguments.no_maps) return done;
+  if (found.operating_point.status != FlappingStatus::flapping) return does_not_flap;
+  complain("it flaps, but a cycle was found in time alone: there is no orbit to be linearised about");
+  return failed;
+}
+
 int run(const LineariseArguments& arguments) {
   const std::string extension = std::filesystem::path(arguments.output).extension().string();
   if (!arguments.output.empty() && extension != ".toml" && extension != ".json" && extension != ".nc" &&
@@ -46,7 +63,9 @@ int run(const LineariseArguments& arguments) {
     options.hinge_offset = quantity_of("--hinge-offset", arguments.hinge_offset, "m");
     if (options.hinge_offset < 0.0) throw InputError("--hinge-offset", 0, 0, "", "must be >= 0 m");
   }
-  const Design<double> design = read_operating_point(arguments.operating_point, options.operating_point);
+  const VehicleFile vehicle = read_operating_point(arguments.operating_point, options.operating_point);
+  if (vehicle.sides) return map_sides(*vehicle.sides, arguments, options);
+  const Design<double>& design = vehicle.design;
   std::optional<OutputFile> output, plot;
   if (!arguments.output.empty()) output.emplace("-o", arguments.output, OutputRules{model_extensions, arguments.force});
   if (format) plot.emplace("--plot", arguments.plot, OutputRules{plot_extensions, arguments.force});

@@ -19,6 +19,7 @@
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/plot.hpp"
 #include "wingbeat/report/report.hpp"
+#include "wingbeat/report/two_sides_report.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat::app {
@@ -49,6 +50,19 @@ std::string case_title(const Design<double>& design, const RunResult& result, Co
   return title;
 }
 
+int run_sides(const TwoSides& sides, const RunArguments& arguments, const RunOptions& options) {
+  for (const auto& [option, text] :
+       {std::pair("--waveforms", &arguments.waveforms), std::pair("--plot", &arguments.plot),
+        std::pair("--plot-power", &arguments.plot_power)}) {
+    if (!text->empty()) throw InputError(option, 0, 0, "", "takes no vehicle whose sides differ, which has two cycles");
+  }
+  if (arguments.endurance) throw InputError("--endurance", 0, 0, "", "takes no vehicle whose sides differ");
+  const TwoSidesResult result = run_two_sides(sides, options);
+  print(arguments.json ? json_two_sides(result) : text_two_sides(result, options));
+  if (result.status == FlappingStatus::flapping) return done;
+  return result.status == FlappingStatus::undecided ? failed : does_not_flap;
+}
+
 int run(const RunArguments& arguments) {
   RunOptions options;
   options.method = choice_of<Method>("--method", arguments.method);
@@ -71,7 +85,9 @@ int run(const RunArguments& arguments) {
   const auto cycle_format = asked_format("--plot", arguments.plot, arguments.plot_width);
   const auto power_format = asked_format("--plot-power", arguments.plot_power, arguments.plot_width);
 
-  const Design<double> design = read_operating_point(arguments.operating_point, options);
+  const VehicleFile vehicle = read_operating_point(arguments.operating_point, options);
+  if (vehicle.sides) return run_sides(*vehicle.sides, arguments, options);
+  const Design<double>& design = vehicle.design;
   const OutputRules drawing{plot_extensions, arguments.force};
   auto waveforms = reserved("--waveforms", arguments.waveforms, {".csv .nc", arguments.force});
   auto cycle_plot = reserved("--plot", arguments.plot, drawing);

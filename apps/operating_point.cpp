@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "options.hpp"
-#include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/study/hold.hpp"
@@ -25,6 +24,16 @@ void apply_voltage(Supply<double>& supply, const std::string& text) {
   }
   supply.voltage = quantity_of("--voltage", text, "V");
   if (supply.voltage < 0.0) throw InputError("--voltage", 0, 0, "", "must be >= 0 V");
+}
+
+/// What is asked of the whole vehicle, of which neither side has a known part.
+void refuse_sums(const OperatingPointArguments& a) {
+  for (const auto& [option, text] : {std::pair("--lift", &a.lift), std::pair("--lift-to-weight", &a.lift_to_weight),
+                                     std::pair("--power", &a.power)}) {
+    if (text->empty()) continue;
+    throw InputError(option, 0, 0, "",
+                     "the vehicle's sides differ, and neither has a known part of it; set supply.amplitude instead");
+  }
 }
 
 }  // namespace
@@ -67,7 +76,7 @@ void add_operating_point(CLI::App* command, OperatingPointArguments& a) {
   add_choice<Condition>(command, "--condition", a.condition, "air (default), vacuum or wingless", "CONDITION");
 }
 
-Design<double> read_operating_point(const OperatingPointArguments& arguments, RunOptions& options) {
+VehicleFile read_operating_point(const OperatingPointArguments& arguments, RunOptions& options) {
   options.allow_extrapolation = arguments.allow_extrapolation;
   options.condition = choice_of<Condition>("--condition", arguments.condition);
   if (!arguments.frequency.empty()) {
@@ -88,7 +97,9 @@ Design<double> read_operating_point(const OperatingPointArguments& arguments, Ru
       throw InputError("--angle-of-attack", 0, 0, "", "must be > 0 deg, < 90 deg");
     }
   }
-  Design<double> design = read_design(arguments.vehicle, arguments.overrides);
+  VehicleFile vehicle = read_vehicle(arguments.vehicle, arguments.overrides);
+  if (vehicle.sides) refuse_sums(arguments);
+  Design<double>& design = vehicle.design;
   if (!arguments.lift_to_weight.empty()) {
     const double ratio = quantity_of("--lift-to-weight", arguments.lift_to_weight, "1");
     if (!(ratio > 0.0)) throw InputError("--lift-to-weight", 0, 0, "", "must be > 0");
@@ -98,7 +109,7 @@ Design<double> read_operating_point(const OperatingPointArguments& arguments, Ru
     }
   }
   if (!arguments.voltage.empty()) apply_voltage(design.supply, arguments.voltage);
-  return design;
+  return vehicle;
 }
 
 void require_reached(const OperatingPointArguments& arguments, const RunResult& result) {

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "wingbeat/files/two_sides_file.hpp"
 #include "wingbeat/study/run.hpp"
 
 namespace wingbeat::app {
@@ -24,7 +25,7 @@ void add_operating_point(CLI::App* command, OperatingPointArguments& arguments);
 double quantity_of(const char* option, const std::string& text, const char* unit);
 
 /// What the options ask for, into `options`; checked before the vehicle is read. Throws InputError.
-Design<double> read_operating_point(const OperatingPointArguments& arguments, RunOptions& options);
+VehicleFile read_operating_point(const OperatingPointArguments& arguments, RunOptions& options);
 
 /// Throws InputError where the vehicle flaps, but not at the frequency, lift or power that was asked for.
 void require_reached(const OperatingPointArguments& arguments, const RunResult& result);

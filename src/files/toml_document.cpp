@@ -403,13 +403,50 @@ Origin Document::locate(std::string_view path) const {
   }
 }
 
+namespace {
+
+/// The keys below a table of one side, which may be dotted or stand in sections.
+void collect_settings(const TomlNode& table, const std::string& above, const std::string& file,
+                      std::vector<Setting>& settings) {
+  for (const auto& [key, node] : table.members) {
+    const std::string path = above.empty() ? key : fmt::format("{}.{}", above, key);
+    if (node.kind == TomlNode::Kind::table && is_section(path) && !node.in_line) {
+      collect_settings(node, path, file, settings);
+    } else {
+      settings.push_back({path, node, {file, node.line, node.column, true}});
+    }
+  }
+}
+
+/// Moves [left] and [right] from the tree to the document.
+void take_sides(TomlNode& tree, Document& document) {
+  for (const char* name : {"left", "right"}) {
+    const TomlNode* node = tree.find(name);
+    if (!node) continue;
+    const Origin origin{document.file_name, node->line, node->column, false};
+    document.errors.attempt([&] {
+      if (node->kind == TomlNode::Kind::table) return;
+      origin.refuse(name,
+                    fmt::format("expected a section [{}], keys of that side alone, got {}", name, kind_of(*node)));
+    });
+    SideTable& side = document.sides[name];
+    side.origin = origin;
+    collect_settings(*node, "", document.file_name, side.settings);
+    std::erase_if(tree.members, [&](const TomlMember& member) { return member.key == name; });
+  }
+}
+
+}  // namespace
+
 Document parse_document(std::string_view text, std::string_view file_name) {
   Document document;
   document.file_name = file_name;
   document.last_line = 1 + int(std::count(text.begin(), text.end(), '\n')) - int(text.ends_with('\n'));
   document.last_line = std::max(document.last_line, 1);
   const Origin origin{document.file_name, 0, 0, false};
-  Flattener(document, origin).enter_members(parse_toml(text, origin), "");
+  TomlNode tree = parse_toml(text, origin);
+  take_sides(tree, document);
+  Flattener(document, origin).enter_members(tree, "");
   return document;
 }
 

@@ -65,11 +65,25 @@ struct Value : TomlNode {
   Origin origin;
 };
 
+/// A value that replaces one of a vehicle file, as an override does, without a text of its own.
+struct Setting {
+  std::string path;
+  TomlNode value;
+  Origin origin;  ///< what messages name; `overridden`
+};
+
+/// [left] or [right]: what is of one side alone.
+struct SideTable {
+  Origin origin;
+  std::vector<Setting> settings;
+};
+
 struct Document {
   std::string file_name;
   int last_line = 1;
   std::map<std::string, Value, std::less<>> values;     ///< by dotted path
   std::map<std::string, Origin, std::less<>> sections;  ///< by dotted path
+  std::map<std::string, SideTable> sides;               ///< not among the sections
   InputErrors errors;                                   ///< keys that are unknown or hold what they cannot
   std::vector<std::string> spoiled;  ///< these, and what they were to be: not to be called missing as well
 
@@ -81,13 +95,6 @@ struct Document {
 
 /// Throws InputError for text that is not TOML. Unknown keys are among the document's errors.
 Document parse_document(std::string_view text, std::string_view file_name);
-
-/// A value that replaces one of a vehicle file, as an override does, without a text of its own.
-struct Setting {
-  std::string path;
-  TomlNode value;
-  Origin origin;  ///< what messages name; `overridden`
-};
 
 /// Applies settings, then overrides, as read_design documents the latter. Throws InputError for those that cannot be,
 /// the others being applied.

@@ -105,7 +105,10 @@ void put_model(std::string& text, const LinearModel& model) {
   put_matrix(text, "D", c.d, outputs, inputs);
 }
 
-void put_map(std::string& text, const AllocationMap& map) {
+}  // namespace
+
+std::string detail::map_text(const AllocationMap& map) {
+  std::string text;
   auto out = std::back_inserter(text);
   const std::string input = fmt::format("{} [{}]", name_of(map.input), unit_of(map.input));
   fmt::format_to(out, "\n{:<26}{:>13}{:>15}{:>15}{:>15}{:>13}\n", input, "lift N", "roll N m", "pitch N m", "yaw N m",
@@ -119,9 +122,8 @@ void put_map(std::string& text, const AllocationMap& map) {
   line("  from these points", map.slope_of_points);
   line("  off by at most about", map.slope_of_points_error);
   line("  points apart by", map.slope_of_points_step);
+  return text;
 }
-
-}  // namespace
 
 std::string toml_control(const ControlModels& models, const std::string& version) {
   Json tree = detail::control_tree(models, version);
@@ -151,7 +153,7 @@ std::string text_control(const ControlModels& models) {
     put_matrix(text, "\nN, N m per m/s, rad/s", *models.body, {body_loads.begin(), body_loads.end()},
                {body_motions.begin(), body_motions.end()});
   }
-  for (const AllocationMap& map : models.maps) put_map(text, map);
+  for (const AllocationMap& map : models.maps) text += detail::map_text(map);
   return text;
 }
 

@@ -1,4 +1,6 @@
 // What the --json of linearise has: linear models, static maps, derivatives by the body's motion.
+#include "report/control_result.hpp"
+
 #include <fmt/format.h>
 
 #include "report/control_tree.hpp"
@@ -121,6 +123,8 @@ const Description<AllocationPoint>& slope_description() {
   return description;
 }
 
+}  // namespace
+
 const Description<AllocationMap>& allocation_description() {
   using R = AllocationMap;
   const auto column = [](double AllocationPoint::* member) {
@@ -141,6 +145,8 @@ const Description<AllocationMap>& allocation_description() {
   }();
   return description;
 }
+
+namespace {
 
 const Description<BodyDerivatives>& body_description() {
   using R = BodyDerivatives;

@@ -10,4 +10,7 @@ namespace wingbeat::detail {
 
 Json control_tree(const ControlModels& models, const std::string& version);
 
+/// A static map as a table.
+std::string map_text(const AllocationMap& map);
+
 }  // namespace wingbeat::detail

@@ -6,6 +6,8 @@
 namespace wingbeat::described {
 
 nlohmann::ordered_json run_schema();
+nlohmann::ordered_json two_sides_schema();       ///< of run, where the sides differ
+nlohmann::ordered_json two_sides_maps_schema();  ///< of linearise, likewise
 nlohmann::ordered_json endurance_schema();
 nlohmann::ordered_json tolerance_schema();
 nlohmann::ordered_json optimum_schema();

@@ -24,8 +24,17 @@ Json optimise_schema() {
        schema::with_text(described::front_schema(), "several objectives")});
 }
 
+Json run_schema() {
+  return schema::either({schema::with_text(described::run_schema(), "both sides alike"),
+                         schema::with_text(described::two_sides_schema(), "sides that differ")});
+}
+Json linearise_schema() {
+  return schema::either({schema::with_text(described::control_schema(), "both sides alike"),
+                         schema::with_text(described::two_sides_maps_schema(), "sides that differ")});
+}
+
 constexpr std::array<std::pair<std::string_view, Json (*)()>, 16> schemas = {
-    {{"run", described::run_schema},
+    {{"run", run_schema},
      {"compare", described::comparison_schema},
      {"sweep", described::sweep_schema},
      {"identify-motor", described::identification_schema},
@@ -34,7 +43,7 @@ constexpr std::array<std::pair<std::string_view, Json (*)()>, 16> schemas = {
      {"tolerance", described::tolerance_schema},
      {"optimise", optimise_schema},
      {"endurance", described::endurance_schema},
-     {"linearise", described::control_schema},
+     {"linearise", linearise_schema},
      {"reproduce", described::claims_schema},
      {"scale", described::scaling_schema},
      {"synthesise", described::synthesis_schema},

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <optional>
 
 #include "wingbeat/cycle/wing_loads.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -63,81 +64,58 @@ DriveWave<double> wave_of(DriveInput which, double value) {
   return wave;
 }
 
-class Sides {
+/// One side's wings, or half of all where both sides are alike.
+class Side {
  public:
-  Sides(const Linearisation& linearisation, double hinge_offset)
+  /// `share`: of the wings that were linearised.
+  Side(const Linearisation& linearisation, double hinge_offset, double share)
       : orbit_(linearisation.orbit.record),
         reporting_(reporting_of(linearisation.operating_point.design)),
         hinge_offset_(hinge_offset),
+        share_(share),
         slopes_(wing_load_slopes(orbit_)) {
     vehicle_ = orbit_.vehicle();
     vehicle_.thermal = {};  // the record's motor is as warm as it gets
     const double s2 = vehicle_.wings.s2;
     centre_ = s2 > 0.0 ? vehicle_.wings.s3 / s2 : 0.0;
-    at_orbit_ = side_of(wing_loads(orbit_));
+    at_orbit_ = means_of(wing_loads(orbit_));
     by_voltage_[key_of(vehicle_.voltage)] = at_orbit_;
   }
 
   const Vehicle<double>& vehicle() const { return vehicle_; }
   double arm() const { return hinge_offset_ + centre_; }
 
-  /// The points at `count` even distances from `low` to `high`, the operating point in their midst.
-  std::vector<AllocationPoint> points(AllocationInput which, double low, double high, int count, double centre) {
-    const InputOfSides effect = effect_of(which);
-    std::vector<double> inputs;
-    for (int n = 0; n < count; ++n) inputs.push_back(low + (high - low) * double(n) / double(count - 1));
-    std::vector<AllocationPoint> points;
-    if (effect.which == DriveInput::voltage) {
-      for (const double input : inputs) {
-        const auto side = [&](double share) { return at_voltage(vehicle_.voltage + share * (input - centre)); };
-        points.push_back(point_of(input, {side(effect.right), side(effect.left)}));
-      }
-      return points;
-    }
-    const std::vector<SideMeans> right = under_waves(effect.which, inputs), left = [&] {
-      std::vector<double> opposite = inputs;
-      if (effect.left == effect.right) return right;
-      for (double& input : opposite) input *= effect.left / effect.right;
-      return under_waves(effect.which, opposite);
-    }();
-    for (std::size_t n = 0; n < inputs.size(); ++n) points.push_back(point_of(inputs[n], {right[n], left[n]}));
-    return points;
+  /// Where an input of the drive is changed by each of these; those of the wave are symmetrical about 0.
+  std::vector<SideMeans> over(DriveInput which, const std::vector<double>& changes) {
+    if (which != DriveInput::voltage) return under_waves(which, changes);
+    std::vector<SideMeans> means;
+    for (const double change : changes) means.push_back(at(which, change));
+    return means;
   }
 
-  /// A point by itself, followed from the operating point.
-  AllocationPoint point(AllocationInput which, double input, double centre) {
-    const InputOfSides effect = effect_of(which);
-    const auto side = [&](double share) {
-      return effect.which == DriveInput::voltage ? at_voltage(vehicle_.voltage + share * (input - centre))
-                                                 : under_wave(effect.which, share * input);
-    };
-    const SideMeans right = side(effect.right);
-    return point_of(input, {right, effect.left == effect.right ? right : side(effect.left)});
+  /// By itself, followed from the operating point.
+  SideMeans at(DriveInput which, double change) {
+    return which == DriveInput::voltage ? at_voltage(vehicle_.voltage + change) : under_wave(which, change);
   }
 
-  AllocationPoint slope(AllocationInput which, double centre) const {
-    const InputOfSides effect = effect_of(which);
-    const SideMeans by_input = side_of(slopes_[std::size_t(effect.which)]);
-    return point_of(centre, {scaled(by_input, effect.right), scaled(by_input, effect.left)});
-  }
-
- private:
-  static long long key_of(double voltage) { return std::llround(1e12 * voltage); }
-
-  static SideMeans scaled(const SideMeans& m, double by) {
+  SideMeans slope(DriveInput which, double by) const {
+    const SideMeans m = means_of(slopes_[std::size_t(which)]);
     const auto no_minus = [](double x) { return x == 0.0 ? 0.0 : x; };
     return {no_minus(by * m.lift), no_minus(by * m.lift_sideways), no_minus(by * m.lift_forward), no_minus(by * m.yaw),
             no_minus(by * m.frequency)};
   }
 
-  SideMeans side_of(const WingLoads& all) const {
+ private:
+  static long long key_of(double voltage) { return std::llround(1e12 * voltage); }
+
+  SideMeans means_of(const WingLoads& all) const {
     const auto load = [&](WingLoad which) { return all[std::size_t(which)]; };
     const double r = centre_, per_r = hinge_offset_ / std::max(centre_, 1e-300);
     // The drag M_aero / r acts against beta' at p = (0, d, 0) + r e_r.
-    return {0.5 * load(WingLoad::lift),
-            0.5 * (hinge_offset_ * load(WingLoad::lift) + r * load(WingLoad::lift_sideways)),
-            0.5 * r * load(WingLoad::lift_forward),
-            0.5 * (load(WingLoad::moment) + (r > 0.0 ? per_r * load(WingLoad::moment_sideways) : 0.0)),
+    return {share_ * load(WingLoad::lift),
+            share_ * (hinge_offset_ * load(WingLoad::lift) + r * load(WingLoad::lift_sideways)),
+            share_ * r * load(WingLoad::lift_forward),
+            share_ * (load(WingLoad::moment) + (r > 0.0 ? per_r * load(WingLoad::moment_sideways) : 0.0)),
             load(WingLoad::frequency)};
   }
 
@@ -149,7 +127,7 @@ class Sides {
     Vehicle<double> there = vehicle_;
     there.voltage = voltage;
     const SteadyFlapping found = find_steady_flapping(there, {point_tolerance, false, reporting_}, start_up_in_time());
-    if (found.status == FlappingStatus::flapping && !found.record.empty()) means = side_of(wing_loads(found.record));
+    if (found.status == FlappingStatus::flapping && !found.record.empty()) means = means_of(wing_loads(found.record));
     by_voltage_[key_of(voltage)] = means;
     return means;
   }
@@ -163,7 +141,7 @@ class Sides {
       std::vector<double> near;
       for (int n = middle + way; n >= 0 && n < int(inputs.size()); n += way) {
         const auto found = loads_under_wave(orbit_, wave_of(which, inputs[std::size_t(n)]), near);
-        means[std::size_t(n)] = found ? side_of(found->loads) : SideMeans{};
+        means[std::size_t(n)] = found ? means_of(found->loads) : SideMeans{};
         near = found ? found->start : std::vector<double>{};
       }
     }
@@ -173,7 +151,7 @@ class Sides {
   SideMeans under_wave(DriveInput which, double input) {
     const auto [entry, added] = by_wave_.try_emplace({which, std::llround(1e12 * input)});
     if (added) {
-      if (const auto found = loads_under_wave(orbit_, wave_of(which, input))) entry->second = side_of(found->loads);
+      if (const auto found = loads_under_wave(orbit_, wave_of(which, input))) entry->second = means_of(found->loads);
     }
     return entry->second;
   }
@@ -181,11 +159,61 @@ class Sides {
   Vehicle<double> vehicle_;
   const CycleRecord& orbit_;
   Reporting reporting_;
-  double hinge_offset_, centre_;
+  double hinge_offset_, share_, centre_;
   WingLoadSlopes slopes_;
   SideMeans at_orbit_;
   std::map<long long, SideMeans> by_voltage_;
   std::map<std::pair<DriveInput, long long>, SideMeans> by_wave_;
+};
+
+class Sides {
+ public:
+  /// Of a vehicle whose sides are alike.
+  Sides(const Linearisation& both, double hinge_offset) : right_(both, hinge_offset, 0.5) {}
+  Sides(const Linearisation& left, const Linearisation& right, double hinge_offset)
+      : right_(right, hinge_offset, 1.0), own_left_(std::in_place, left, hinge_offset, 1.0) {}
+
+  const Vehicle<double>& vehicle() const { return right_.vehicle(); }
+  double arm() const { return right_.arm(); }
+  bool two() const { return own_left_ || right_.vehicle().motors == 2.0; }
+  double centre_of(AllocationInput which) const {
+    return which == AllocationInput::voltage ? right_.vehicle().voltage : 0.0;
+  }
+
+  std::vector<AllocationPoint> points(AllocationInput which, const std::vector<double>& inputs) {
+    const InputOfSides effect = effect_of(which);
+    const auto over = [&](Side& side, double share) {
+      std::vector<double> changes;
+      for (const double input : inputs) changes.push_back(share * (input - centre_of(which)));
+      return side.over(effect.which, changes);
+    };
+    const std::vector<SideMeans> right = over(right_, effect.right);
+    const std::vector<SideMeans> left = alike(effect) ? right : over(this->left(), effect.left);
+    std::vector<AllocationPoint> points;
+    for (std::size_t n = 0; n < inputs.size(); ++n) points.push_back(point_of(inputs[n], {right[n], left[n]}));
+    return points;
+  }
+
+  /// A point by itself, followed from the operating point.
+  AllocationPoint point(AllocationInput which, double input) {
+    const InputOfSides effect = effect_of(which);
+    const double change = input - centre_of(which);
+    const SideMeans right = right_.at(effect.which, effect.right * change);
+    return point_of(input, {right, alike(effect) ? right : left().at(effect.which, effect.left * change)});
+  }
+
+  AllocationPoint slope(AllocationInput which) {
+    const InputOfSides effect = effect_of(which);
+    return point_of(centre_of(which),
+                    {right_.slope(effect.which, effect.right), left().slope(effect.which, effect.left)});
+  }
+
+ private:
+  Side& left() { return own_left_ ? *own_left_ : right_; }
+  bool alike(const InputOfSides& effect) const { return !own_left_ && effect.left == effect.right; }
+
+  Side right_;
+  std::optional<Side> own_left_;
 };
 
 /// The operating point and those one and two steps to either side.
@@ -236,19 +264,20 @@ void set_slopes_of_points(AllocationMap& map, std::size_t middle, double arm, co
   }
 }
 
-}  // namespace
+std::vector<double> even_inputs(double low, double high, int count) {
+  std::vector<double> inputs;
+  for (int n = 0; n < count; ++n) inputs.push_back(low + (high - low) * double(n) / double(count - 1));
+  return inputs;
+}
 
-std::vector<AllocationMap> allocation_maps(const Linearisation& linearisation, double hinge_offset) {
+std::vector<AllocationMap> maps_of(Sides& sides) {
   std::vector<AllocationMap> maps;
-  if (!linearisation.model) return maps;
-  Sides sides(linearisation, hinge_offset);
   const double voltage = sides.vehicle().voltage;
-  const bool direct = drive_of(sides.vehicle()).alternating, two = sides.vehicle().motors == 2.0;
+  const bool direct = drive_of(sides.vehicle()).alternating, two = sides.two();
   const auto add = [&](AllocationInput which, double low, double high, int count, int middle) {
-    const double centre = which == AllocationInput::voltage ? voltage : 0.0;
-    AllocationMap map{which, sides.points(which, low, high, count, centre), sides.slope(which, centre), {}, {}, {}};
+    AllocationMap map{which, sides.points(which, even_inputs(low, high, count)), sides.slope(which), {}, {}, {}};
     set_slopes_of_points(map, std::size_t(middle), sides.arm(),
-                         [&](double input) { return sides.point(which, input, centre); });
+                         [&](double input) { return sides.point(which, input); });
     maps.push_back(std::move(map));
   };
   add(AllocationInput::voltage, 0.5 * voltage, 1.3 * voltage, 17, 10);
@@ -259,6 +288,27 @@ std::vector<AllocationMap> allocation_maps(const Linearisation& linearisation, d
     add(AllocationInput::split_cycle_cosine, -0.3, 0.3, 7, 3);
   }
   return maps;
+}
+
+}  // namespace
+
+std::vector<AllocationMap> allocation_maps(const Linearisation& linearisation, double hinge_offset) {
+  if (!linearisation.model) return {};
+  Sides sides(linearisation, hinge_offset);
+  return maps_of(sides);
+}
+
+std::vector<AllocationMap> allocation_maps(const Linearisation& left, const Linearisation& right, double hinge_offset) {
+  if (!left.model || !right.model) return {};
+  Sides sides(left, right, hinge_offset);
+  return maps_of(sides);
+}
+
+std::vector<AllocationPoint> allocation_points(const Linearisation& linearisation, AllocationInput which,
+                                               const std::vector<double>& inputs, double hinge_offset) {
+  if (!linearisation.model) return {};
+  Sides sides(linearisation, hinge_offset);
+  return sides.points(which, inputs);
 }
 
 }  // namespace wingbeat

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/two_sides_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::vector<std::string> parts(1);
@@ -25,8 +25,9 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                            parts.end());
   std::string written;
   try {
-    written = wingbeat::write_design(
-        wingbeat::parse_design(parts[0], "fuzz.toml", overrides, [&](const std::string&) { return table; }));
+    const wingbeat::VehicleFile vehicle =
+        wingbeat::parse_vehicle(parts[0], "fuzz.toml", overrides, [&](const std::string&) { return table; });
+    written = wingbeat::write_design(vehicle.sides ? vehicle.sides->left : vehicle.design);
   } catch (const wingbeat::InputError& error) {
     // One error a line, each with its place.
     std::istringstream lines(error.what());

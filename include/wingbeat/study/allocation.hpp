@@ -87,4 +87,12 @@ inline constexpr AllocationSlope allocation_slopes[] = {
 /// voltage is its mean. The motor stays at the temperatures of the operating point, as in the linear model.
 std::vector<AllocationMap> allocation_maps(const Linearisation& linearisation, double hinge_offset = 0.0);
 
+/// The maps of a vehicle whose sides differ, each linearised as a vehicle of its own at the same voltage (TwoSides).
+std::vector<AllocationMap> allocation_maps(const Linearisation& left, const Linearisation& right, double hinge_offset);
+
+/// Points of one map. Inputs other than a voltage are symmetrical about 0, which is in their midst; none without a
+/// linear model.
+std::vector<AllocationPoint> allocation_points(const Linearisation& linearisation, AllocationInput which,
+                                               const std::vector<double>& inputs, double hinge_offset = 0.0);
+
 }  // namespace wingbeat
