@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "files/free_parameter.hpp"
+#include "files/measured_maps.hpp"
 #include "files/measured_table.hpp"
 #include "files/toml_document.hpp"
 #include "files/toml_fields.hpp"
@@ -60,6 +61,10 @@ class MeasuredReader {
       case ValidationModel::passive_pitch: read_passive_pitch(); break;
       case ValidationModel::ratios: read_ratios(); break;
       case ValidationModel::resistance: read_resistance(); break;
+      case ValidationModel::maps:
+        known({"vehicle", "settings", "hinge_offset", "map"});
+        set_.problem = detail::read_maps(plan_, table_, vehicle(), set_);
+        break;
       case ValidationModel::none: break;
     }
     return std::move(set_);

@@ -193,10 +193,32 @@ std::string text_validation_summary(std::span<const ValidationSet> sets, std::sp
   return text;
 }
 
+namespace {
+
+/// A panel for each quantity of a set to which nothing is fitted.
+void plot_quantities(const ValidationSet& set, const ValidationStage& stage, PlotFormat format,
+                     const std::filesystem::path& file) {
+  std::vector<PointPanel> panels;
+  for (std::size_t q = 0; q < set.quantities.size(); ++q) {
+    PointSeries series{"predicted rows", {}};
+    for (std::size_t n = 0; n < set.points.size(); ++n) {
+      const ValidationPoint& p = set.points[n];
+      const double off = 100.0 * (stage.predicted[n] / p.measured - 1.0);
+      if (p.quantity == q && std::isfinite(off)) series.points.emplace_back(p.position, off);
+    }
+    panels.push_back({set.quantities[q].name, {}});
+    if (!series.points.empty()) panels.back().series.push_back(std::move(series));
+  }
+  plot_panels(panels, {set.name, set.position_name, "computed over published, minus 1 (%)", 0.0}, format, file);
+}
+
+}  // namespace
+
 void plot_validation(const ValidationSet& set, const ValidationResult& result, PlotFormat format,
                      const std::filesystem::path& file) {
   if (result.stages.empty()) throw std::runtime_error(set.name + " has no prediction to plot");
   const ComparedQuantity& quantity = set.quantities.front();
+  if (set.model == ValidationModel::maps) return plot_quantities(set, result.stages.front(), format, file);
   // In per cent where that has two digits.
   double largest = 0.0;
   const std::size_t shown = std::min<std::size_t>(result.stages.size(), stages_in_a_table);

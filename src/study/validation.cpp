@@ -284,6 +284,37 @@ std::vector<ValidationStage> stages_of(const ValidationSet& set, const RatiosPro
   });
 }
 
+// ---- static maps
+
+Numbers map_numbers(const ValidationSet& set, const MapsProblem& problem) {
+  Numbers numbers(set.points.size(), absent);
+  const Linearisation linearisation = linearise(problem.design);
+  for (std::size_t q = 0; q < problem.maps.size(); ++q) {
+    const MapsProblem::Map& map = problem.maps[q];
+    Numbers inputs;
+    const bool voltage = map.input == AllocationInput::voltage;
+    if (!voltage) inputs.push_back(0.0);
+    for (std::size_t n = 0; n < set.points.size(); ++n) {
+      if (set.points[n].quantity != q) continue;
+      inputs.push_back(problem.inputs[n]);
+      if (!voltage) inputs.push_back(-problem.inputs[n]);
+    }
+    std::sort(inputs.begin(), inputs.end());
+    inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
+    for (const AllocationPoint& p : allocation_points(linearisation, map.input, inputs, problem.hinge_offset)) {
+      for (std::size_t n = 0; n < set.points.size(); ++n) {
+        if (set.points[n].quantity == q && problem.inputs[n] == p.input) numbers[n] = p.*map.gives / map.per_value;
+      }
+    }
+  }
+  return numbers;
+}
+
+std::vector<ValidationStage> stages_of(const ValidationSet& set, const MapsProblem& problem) {
+  return stages_by_residuals(
+      set, {}, [&](const std::vector<FreeParameter>&, const Numbers&) { return map_numbers(set, problem); });
+}
+
 // ---- the resistance of a battery
 
 std::vector<ValidationStage> stages_of(const ValidationSet& set, const ResistanceProblem&) {

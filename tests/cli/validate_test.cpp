@@ -21,7 +21,7 @@ TEST_F(Validate, ListsWhatThereIsAndWhatIsNotPredicted) {
   EXPECT_THAT(o.out, HasSubstr("Not predicted:\n"));
   EXPECT_THAT(o.out, HasSubstr("ucl-rig-stroke             torque constant"));
   const Json json = run({"validate", "--json"}).json();
-  EXPECT_EQ(json["sets"].size(), 20U);
+  EXPECT_EQ(json["sets"].size(), 21U);
   for (const Json& set : json["sets"]) EXPECT_TRUE(set["stages"].empty());
 }
 
@@ -70,6 +70,32 @@ TEST_F(Validate, WithNothingFittedIsARunWithTheFilesSettings) {
   const auto rms = [&](int stage) { return set["stages"][stage]["misses"][0]["rms"].get<double>(); };
   EXPECT_TRUE(set["stages"][1]["misses"][0]["fitted"].get<bool>());
   EXPECT_LT(rms(1), rms(0));
+}
+
+// A controller's lines beside static maps: the signs and factors of the source are those that its file states.
+TEST_F(Validate, MapsAreThoseOfLinearise) {
+  const Json set = run({"validate", "purdue-maps", "--json"}).json()["sets"][0];
+  ASSERT_EQ(set["quantities"].size(), 4U);
+  ASSERT_EQ(set["stages"].size(), 1U);
+  const Json maps = run({"linearise", "purdue-flapper", "--hinge-offset", "13.95 mm", "--json"}).json()["static_maps"];
+  // The slope of the map, at a command that is small enough for it.
+  const auto row = [&](std::size_t quantity) {
+    for (std::size_t n = 0; n < set["points"].size(); ++n) {
+      if (set["points"][n]["quantity"] == quantity) return n;
+    }
+    return std::size_t(0);
+  };
+  const auto computed = [&](std::size_t n) { return set["stages"][0]["predicted"][n].get<double>(); };
+  const auto slope = [&](std::size_t map, const char* of) { return maps[map]["slope"][of].get<double>(); };
+  EXPECT_EQ(set["points"][row(1)]["label"], "0.5 V");
+  EXPECT_NEAR(computed(row(1)), 1e3 * 2.0 * 0.5 * slope(1, "roll_moment"), 0.05 * computed(row(1)));
+  EXPECT_NEAR(computed(row(2)), 1e3 * 0.5 * slope(2, "pitch_moment"), 0.05 * computed(row(2)));
+  EXPECT_NEAR(computed(row(3)), 1e3 * 2.0 * 0.05 * slope(4, "yaw_moment"), 0.05 * computed(row(3)));
+  for (std::size_t quantity = 0; quantity < 4; ++quantity) EXPECT_GT(computed(row(quantity)), 0.0);
+  const Json at8 = run({"run", "purdue-flapper", "--set", "supply.amplitude=8 V", "--json"}).json();
+  EXPECT_NEAR(computed(1), at8["lift_mean_n"].get<double>(), 1e-6);
+  ASSERT_EQ(run({"validate", "purdue-maps", "--plot", path("maps.svg")}).status, 0);
+  EXPECT_THAT(read(path("maps.svg")), HasSubstr("yaw moment"));
 }
 
 TEST_F(Validate, PrintsEveryRowWithinAPage) {

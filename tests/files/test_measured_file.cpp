@@ -39,7 +39,7 @@ TEST(MeasuredFile, EverySetThatShipsHasItsSourceAndIsPredictedOrNot) {
       EXPECT_LT(p.quantity, set.quantities.size());
     }
   }
-  EXPECT_EQ(sets, 20);
+  EXPECT_EQ(sets, 21);
 }
 
 TEST(MeasuredFile, NumbersAreThoseOfTheSource) {
@@ -75,6 +75,20 @@ TEST(MeasuredFile, EverySecondOperatingPointIsFitted) {
   ASSERT_EQ(video.points.size(), 2U);
   EXPECT_TRUE(video.points[0].fitted);
   EXPECT_FALSE(video.points[1].fitted);
+}
+
+TEST(MeasuredFile, MapsHaveTheInputsAndSignsOfTheModel) {
+  const ValidationSet set = shipped("purdue-maps");
+  const auto& problem = std::get<MapsProblem>(set.problem);
+  ASSERT_EQ(problem.maps.size(), 4U);
+  ASSERT_EQ(problem.inputs.size(), set.points.size());
+  EXPECT_EQ(problem.hinge_offset, 13.95e-3);
+  EXPECT_NEAR(set.points[1].measured, 0.0165 * (8.0 - 2.5115), 1e-15);
+  const std::size_t yaw = set.points.size() - 1;
+  EXPECT_EQ(set.points[yaw].label, "0.15");
+  EXPECT_NEAR(set.points[yaw].measured, 1.8401 * 0.15, 1e-12);
+  EXPECT_EQ(problem.inputs[yaw], -2.0 * 0.15);
+  EXPECT_EQ(problem.maps[3].per_value, -1e-3);
 }
 
 TEST(MeasuredFile, TheLineOfADelFlyHasItsExponentAtHover) {
@@ -126,6 +140,14 @@ TEST_F(RefusedFile, SaysWhereAndWhat) {
               HasSubstr("validation.column: there is no column \"size\"; the columns are Hz, magnitude, phase_deg"));
   EXPECT_THAT(refusal("battery-eis-0", "[1, 17", "[nan, 17"),
               HasSubstr("validation.operating_point: row 1 has no number in the column \"Hz\""));
+  EXPECT_THAT(refusal("purdue-maps", "gives = \"yaw_moment\"", "gives = \"jaw_moment\""),
+              HasSubstr("gives: expected one of lift, roll_moment, pitch_moment, yaw_moment"));
+  EXPECT_THAT(refusal("purdue-maps", "slope = \"K_Tz_mNm_per_split\"", "slope = \"K_Tw\""), HasSubstr("slope: "));
+  EXPECT_THAT(refusal("purdue-maps", "at = [0.05", "at = [-0.05"), HasSubstr("at: expected a list of inputs > 0"));
+  EXPECT_THAT(refusal("purdue-maps", "value_per_value = -1", "value_per_value = 0"),
+              HasSubstr("value_per_value: must not be 0"));
+  EXPECT_THAT(refusal("purdue-maps", "../designs/purdue-flapper.toml", "../designs/friction2022.toml"),
+              HasSubstr("input: needs a vehicle of two motors on direct drives"));
   EXPECT_THAT(refusal("battery-eis-0", "\"resistance\"", "\"battery\""),
               HasSubstr("validation.model: expected one of"));
   EXPECT_THAT(refusal("robobee-sdab1", "one = \"piezo.force_per_volt\"", "one = \"piezo.mass\""),

@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "wingbeat/study/allocation.hpp"
 #include "wingbeat/study/bench_fit.hpp"
 #include "wingbeat/study/prescribed_flapping.hpp"
 
@@ -22,13 +23,18 @@ enum class ValidationModel {
   bench,          ///< a metric of steady flapping over voltage, or over voltage and frequency
   passive_pitch,  ///< pitch under a stated stroke
   ratios,         ///< exponents and ratios of a vehicle near hover
+  maps,           ///< lift and moments over what commands the drives
   resistance      ///< a battery's resistance, one number at every frequency
 };
 template <>
 inline constexpr std::pair<const char*, ValidationModel> names_of<ValidationModel>[] = {
-    {"none", ValidationModel::none},     {"prescribed", ValidationModel::prescribed},
-    {"bench", ValidationModel::bench},   {"passive-pitch", ValidationModel::passive_pitch},
-    {"ratios", ValidationModel::ratios}, {"resistance", ValidationModel::resistance}};
+    {"none", ValidationModel::none},
+    {"prescribed", ValidationModel::prescribed},
+    {"bench", ValidationModel::bench},
+    {"passive-pitch", ValidationModel::passive_pitch},
+    {"ratios", ValidationModel::ratios},
+    {"maps", ValidationModel::maps},
+    {"resistance", ValidationModel::resistance}};
 
 /// Which rows a fit may see.
 enum class ValidationSplit {
@@ -91,10 +97,23 @@ struct RatiosProblem {
   Design<double> design;
   std::vector<Kind> kinds;
 };
+/// Static maps about the operating point of a vehicle whose sides are alike.
+struct MapsProblem {
+  /// What a quantity of the set is.
+  struct Map {
+    AllocationInput input = AllocationInput::voltage;
+    double AllocationPoint::* gives = &AllocationPoint::lift;
+    double per_value = 1.0;  ///< SI value of the map over the measured number; < 0 where the source counts it opposite
+  };
+  Design<double> design;
+  double hinge_offset = 0.0;   ///< [m]
+  std::vector<Map> maps;       ///< by quantity
+  std::vector<double> inputs;  ///< of each point, of its map [V] or [1]
+};
 struct ResistanceProblem {};
 
 using ValidationProblem = std::variant<std::monostate, PrescribedProblem, BenchProblem, PassivePitchProblem,
-                                       RatiosProblem, ResistanceProblem>;
+                                       RatiosProblem, MapsProblem, ResistanceProblem>;
 
 /// A measured set and what is to be computed of it.
 struct ValidationSet {
