@@ -86,7 +86,7 @@ TEST_F(Validate, MapsAreThoseOfLinearise) {
     return std::size_t(0);
   };
   const auto computed = [&](std::size_t n) { return set["stages"][0]["predicted"][n].get<double>(); };
-  const auto slope = [&](std::size_t map, const char* of) { return maps[map]["slope"][of].get<double>(); };
+  const auto slope = [&](std::size_t map, const char* column) { return maps[map]["slope"][column].get<double>(); };
   EXPECT_EQ(set["points"][row(1)]["label"], "0.5 V");
   EXPECT_NEAR(computed(row(1)), 1e3 * 2.0 * 0.5 * slope(1, "roll_moment"), 0.05 * computed(row(1)));
   EXPECT_NEAR(computed(row(2)), 1e3 * 0.5 * slope(2, "pitch_moment"), 0.05 * computed(row(2)));

@@ -492,7 +492,7 @@ class FrictionSection(Section):
 class SpringSection(Section):
     @property
     def stiffness(self) -> Quantity | None:
-        """k, stiffness of one hinge spring, at rest at stroke angle zero.
+        """k, stiffness of one hinge spring, at rest at stroke angle zero or at rest_angle.
         [N m/rad] Range: >= 0. Default: required or resonance.
         Instead of spring.resonance or spring.resonance_ratio.
         """
@@ -508,6 +508,12 @@ class SpringSection(Section):
         Number. Range: > 0. Default: required or stiffness.
         Only with transmission.type = direct.
         Instead of spring.stiffness or spring.resonance.
+        """
+    @property
+    def rest_angle(self) -> Quantity | None:
+        """beta_0, stroke angle at which the hinge springs are at rest, positive forward: the middle of the stroke without a mean voltage.
+        [rad] Range: > -pi/2, < pi/2. Default: 0 rad.
+        Only with transmission.type = direct.
         """
     @property
     def mass(self) -> Quantity | None:
@@ -687,6 +693,21 @@ class PitchSection(Section):
         """psi_max, pitch angle to either side at which stops hold the wing.
         [rad] Range: > 0, < pi. Default: none.
         Only with pitch.stiffness.
+        Instead of pitch.stop_low or pitch.stop_high.
+        """
+    @property
+    def stop_low(self) -> Quantity | None:
+        """of stops that differ, the lower: psi goes no lower; the trailing edge is behind a wing that swings forward then.
+        [rad] Range: < 0, > -pi. Default: none.
+        Only with pitch.stiffness.
+        Instead of pitch.stop.
+        """
+    @property
+    def stop_high(self) -> Quantity | None:
+        """of stops that differ, the upper: psi goes no higher.
+        [rad] Range: > 0, < pi. Default: none.
+        Only with pitch.stiffness.
+        Instead of pitch.stop.
         """
     @property
     def friction(self) -> Quantity | None:
