@@ -269,8 +269,8 @@ constexpr auto wing_rows() {
           stop, stop_low, stop_high),
       placed_alternative<S, Pitching>(
           row(pitch_key::stop_low, "none",
-              "of stops that differ, the lower: psi goes no lower; the trailing edge is behind a wing that swings forward "
-              "then",
+              "of stops that differ, the lower: psi goes no lower; the trailing edge is behind a wing that swings "
+              "forward then",
               {"stop"}),
           stop_low, stop),
       placed_alternative<S, Pitching>(
