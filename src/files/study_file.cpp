@@ -61,7 +61,8 @@ class StudyReader : public detail::StudySections {
       refuse(*study_, "study", "nothing to vary; give [[axis]] sections or [samples]");
     }
     places_.study = place_of(*study_);
-    if (const auto voltage = set_.find("supply.voltage"); voltage != set_.end()) places_.set_voltage = voltage->second;
+    if (const auto voltage = set_.values.find("supply.voltage"); voltage != set_.values.end())
+      places_.set_voltage = voltage->second;
     detail::complete_sweep(study.sweep, *this, places_, input);
     std::vector<const Design<double>*> designs;
     for (const auto& v : study.sweep.variants) designs.push_back(&v.design);
@@ -83,7 +84,7 @@ class StudyReader : public detail::StudySections {
     q.unit = "1";
     const Parameter<double>* key = find_parameter<double>(q.key);
     if (!used_.insert(q.key).second) refuse(node, where, fmt::format("{} is varied already", q.key));
-    if (set_.contains(q.key)) refuse(node, where, fmt::format("{} is given in [set] already", q.key));
+    if (set_.values.contains(q.key)) refuse(node, where, fmt::format("{} is given in [set] already", q.key));
     no_override_of(q.key, "has no effect: the study varies it");
     if (const detail::HeldKey* held = detail::held_key(q.key)) {
       q.kind = SweptQuantity::Kind::held;

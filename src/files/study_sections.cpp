@@ -55,7 +55,8 @@ void StudySections::refuse_file(const char* section, const char* key, const std:
   refuse(*node, fmt::format("{}.{}", section, key), message);
 }
 
-Design<double> StudySections::vehicle_in(const std::filesystem::path& vehicle) const {
+Design<double> StudySections::vehicle_in(const std::filesystem::path& vehicle,
+                                         std::span<const KeySettings* const> further) const {
   const Design<double> alone = read_design(vehicle, overrides_);  // its own errors come first, at its own lines
   std::vector<Setting> settings;
   std::vector<std::string> shown;
@@ -63,7 +64,11 @@ Design<double> StudySections::vehicle_in(const std::filesystem::path& vehicle) c
     settings.push_back({key, value, {file(), value.line, value.column, true}});
     shown.push_back(std::move(name));
   };
-  for (const auto& [key, value] : set_) set(key, *value, "set." + key);
+  const auto set_all = [&](const KeySettings& given) {
+    for (const auto& [key, value] : given.values) set(key, *value, given.shown + "." + key);
+  };
+  set_all(set_);
+  for (const KeySettings* given : further) set_all(*given);
   const char* voltage = is_sine(alone.supply.type) ? "supply.amplitude" : "supply.voltage";
   if (held_voltage_) set(voltage, *held_voltage_, "study.hold.voltage");
   try {
@@ -159,7 +164,7 @@ void StudySections::check_overrides() const {
 void StudySections::find_hold() {
   if (const TomlNode* set = root_.find("set")) {
     if (set->kind != Kind::table) wrong(*set, "set", "a section [set] of vehicle-file keys");
-    flatten(*set, "");
+    read_keys(*set, "", set_);
   }
   const TomlNode* hold = study_->find("hold");
   if (!hold) return;
@@ -184,22 +189,22 @@ void StudySections::find_hold() {
   }
   for (const char* key : {"supply.voltage", "supply.amplitude"}) {
     const bool held = held_voltage_ || std::string_view(key) == "supply.voltage";
-    if (held && set_.contains(key)) refuse(*hold, "study.hold", fmt::format("[set] gives {} already", key));
+    if (held && set_.values.contains(key)) refuse(*hold, "study.hold", fmt::format("[set] gives {} already", key));
   }
 }
 
-void StudySections::flatten(const TomlNode& table, const std::string& path) {
+void StudySections::read_keys(const TomlNode& table, const std::string& path, KeySettings& into) const {
   for (const auto& [key, node] : table.members) {
     const std::string full = path.empty() ? key : fmt::format("{}.{}", path, key);
     const bool known = find_parameter<double>(full) != nullptr;
     const bool has_place = attempt([&, &n = node] {
-      if (!known && !is_section(full)) refuse(n, "set." + one_line(full), unknown_key_message(full));
+      if (!known && !is_section(full)) refuse(n, into.shown + "." + one_line(full), unknown_key_message(full));
     });
     if (!has_place) continue;
     if (!known && node.kind == Kind::table && full != "wing.planform" && full != "aerodynamics.coefficients") {
-      flatten(node, full);
+      read_keys(node, full, into);
     } else {
-      set_.emplace(full, &node);
+      into.values.emplace(full, &node);
     }
   }
 }
@@ -248,12 +253,13 @@ std::string StudySections::read_title() const {
   return title ? text_of(*title, "study.title", "a text") : "";
 }
 
-Design<double> StudySections::read_vehicle(const std::filesystem::path& folder) const {
+Design<double> StudySections::read_vehicle(const std::filesystem::path& folder,
+                                           std::span<const KeySettings* const> further) const {
   const std::filesystem::path vehicle = find_vehicle(folder, vehicle_file());
   if (!is_there(vehicle)) {
     refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
   }
-  return vehicle_in(vehicle);
+  return vehicle_in(vehicle, further);
 }
 
 Metric StudySections::metric_called(const TomlNode& node, const std::string& where, const std::string& name) const {
@@ -284,8 +290,8 @@ bool swings_a_crank(const Design<double>& design) {
 
 std::optional<Hold> StudySections::read_hold(const Design<double>& design) const {
   if (swings_a_crank(design)) {
-    const auto given = set_.find("supply.type");
-    refuse(given == set_.end() ? need(*study_, "study", "vehicle", "") : *given->second, "supply.type",
+    const auto given = set_.values.find("supply.type");
+    refuse(given == set_.values.end() ? need(*study_, "study", "vehicle", "") : *given->second, "supply.type",
            no_swinging_crank);
   }
   if (!held_target_) return std::nullopt;

@@ -56,6 +56,12 @@ std::string no_hold(const HeldKey& key, const Design<double>& design);
 /// Whether a key of the vehicle has no effect where that is held.
 bool is_void_at(const HeldKey& held, std::string_view key, const Design<double>& design);
 
+/// Keys of the vehicle that a part of a study file gives, as [set] does.
+struct KeySettings {
+  std::map<std::string, const TomlNode*, std::less<>> values;
+  std::string shown;  ///< what errors write before a key: "set"
+};
+
 /// The sections that every study file has. Derived classes read the others.
 class StudySections : public TomlReader {
  public:
@@ -75,8 +81,9 @@ class StudySections : public TomlReader {
 
   [[noreturn]] void refuse_file(const char* section, const char* key, const std::string& message) const;
 
-  /// The vehicle in a file with [set], a held voltage and the overrides of the command line.
-  Design<double> vehicle_in(const std::filesystem::path& vehicle) const;
+  /// The vehicle in a file with [set], further settings, a held voltage and the overrides of the command line.
+  Design<double> vehicle_in(const std::filesystem::path& vehicle,
+                            std::span<const KeySettings* const> further = {}) const;
 
  protected:
   void known_keys(const TomlNode& table, const std::string& section,
@@ -101,7 +108,10 @@ class StudySections : public TomlReader {
   void complete_metrics(EnsembleOptions& options, std::span<const Design<double>* const> designs) const;
   std::string read_title() const;
   /// The vehicle with [set], its file being sought in that folder.
-  Design<double> read_vehicle(const std::filesystem::path& folder) const;
+  Design<double> read_vehicle(const std::filesystem::path& folder,
+                              std::span<const KeySettings* const> further = {}) const;
+  /// Adds the keys of a table in which sections may be nested, below `path`.
+  void read_keys(const TomlNode& table, const std::string& path, KeySettings& into) const;
   Metric metric_called(const TomlNode& node, const std::string& where, const std::string& name) const;
   /// Whether designs outside the model's domain count as best, feasible or hovering.
   bool read_allow_extrapolation() const;
@@ -119,13 +129,12 @@ class StudySections : public TomlReader {
   const TomlNode* held_voltage_ = nullptr;
   const TomlNode* held_target_ = nullptr;
   const HeldKey* held_key_ = nullptr;  ///< with it
-  std::map<std::string, const TomlNode*, std::less<>> set_;
+  KeySettings set_{{}, "set"};
 
  private:
   const std::string* override_of(std::string_view key) const;
   void check_overrides() const;
   void find_hold();
-  void flatten(const TomlNode& table, const std::string& path);
 
   std::vector<std::string> overrides_;
   mutable InputErrors errors_;

@@ -1,5 +1,7 @@
 #include "wingbeat/files/tolerance_data.hpp"
 
+#include <algorithm>
+#include <string>
 #include <vector>
 
 #include "wingbeat/files/design_file.hpp"
@@ -7,6 +9,15 @@
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
+namespace {
+
+std::string choice_name(const ModelChoice& choice) {
+  std::string name = "choice_" + choice.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+}  // namespace
 
 void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result, const SweepColumns& columns,
                      const std::string& input, const std::string& version, const std::filesystem::path& file) {
@@ -26,6 +37,20 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
         data.define_variable(q.name, {sample}, q.unit, std::string(find_parameter<double>(q.key)->meaning));
     data.set_key(variable, q.key);
     data.write(variable, std::span(q.values).subspan(0, base));
+  }
+  const std::vector<std::uint32_t> combinations = drawn_combinations(study);
+  for (std::size_t k = 0; k < study.choices.size(); ++k) {
+    const ModelChoice& choice = study.choices[k];
+    const auto variable =
+        data.define_dense(choice_name(choice), {sample}, "1", "alternative of the choice", NetcdfFile::Storage::flag);
+    std::vector<std::string> names;
+    std::vector<std::int8_t> chosen;
+    for (const ModelAlternative& a : choice.alternatives) names.push_back(a.name);
+    data.set_flags(variable, names);
+    for (std::size_t n = 0; n < base; ++n) {
+      chosen.push_back(std::int8_t(alternative_in(study.choices, combinations[n], k)));
+    }
+    data.write_run(variable, 0, chosen);
   }
   data.write_run(define_status(data, {sample}), 0, std::span(columns.status).subspan(0, base));
   data.write_run(define_domain(data, {sample}), 0, std::span(columns.domain).subspan(0, base));
@@ -75,6 +100,34 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
   row("linear_mean", "value at the parameters' means, unit of the output", &ToleranceOutput::linear_mean);
   row("linear_deviation", "standard deviation by the linear prediction, unit of the output",
       &ToleranceOutput::linear_deviation);
+  if (!study.choices.empty()) {
+    row("deviation_by_parameters", "standard deviation by the parameters alone, unit of the output",
+        &ToleranceOutput::deviation_by_parameters);
+  }
+  for (std::size_t k = 0; k < study.choices.size(); ++k) {
+    const ModelChoice& choice = study.choices[k];
+    const std::string name = choice_name(choice);
+    const auto alternative = data.define_dimension(name + "_alternative", choice.alternatives.size());
+    std::vector<std::string> names;
+    std::vector<double> shares;
+    for (std::size_t a = 0; a < choice.alternatives.size(); ++a) {
+      names.push_back(choice.alternatives[a].name);
+      shares.push_back(choice.share(a));
+    }
+    data.define_texts(name + "_alternative", alternative, names, "alternatives of the choice");
+    data.write(data.define_variable(name + "_share", {alternative}, "1", "share of the samples by the weights"),
+               shares);
+    const auto conditional = [&](const char* end, const char* meaning, double ConditionalMoments::* member) {
+      std::vector<double> values;
+      for (const ToleranceOutput& o : result.outputs) {
+        for (const ConditionalMoments& m : o.choices[k].alternatives) values.push_back(m.*member);
+      }
+      data.write(data.define_variable(name + end, {output, alternative}, "1", meaning), values);
+    };
+    conditional("_mean", "mean where it is chosen, unit of the output", &ConditionalMoments::mean);
+    conditional("_deviation", "standard deviation where it is chosen, unit of the output",
+                &ConditionalMoments::deviation);
+  }
   data.close();
 }
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <set>
 
-#include "files/study_sections.hpp"
+#include "files/choice_sections.hpp"
 #include "wingbeat/files/design_parameter.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -17,10 +17,10 @@ namespace {
 namespace fs = std::filesystem;
 using detail::Kind, detail::reason_of;
 
-class ToleranceReader : public detail::StudySections {
+class ToleranceReader : public detail::ChoiceSections {
  public:
   ToleranceReader(const fs::path& file, std::string_view text, std::span<const std::string> overrides)
-      : StudySections(input_name(file), text, overrides, {"samples", "parameter", "fit"}, {"condition"}),
+      : ChoiceSections(input_name(file), text, overrides, {"samples", "parameter", "fit", "choice"}, {"condition"}),
         folder_(file.parent_path()) {}
 
   ToleranceStudy read() {
@@ -32,27 +32,41 @@ class ToleranceReader : public detail::StudySections {
     attempt([&] { study.allow_extrapolation = read_allow_extrapolation(); });
     attempt([&] { read_metrics(study.options); });
     attempt([&] { read_samples(); });
-    if (!attempt([&] { study.design = read_vehicle(folder_); })) finish();  // the rest is read for this vehicle
-    const Design<double>* const designs[] = {&study.design};
+    // The rest is read for these vehicles.
+    if (!read_choices(study.choices) || !read_combinations(study, folder_)) finish();
+    std::vector<const Design<double>*> designs = {&study.design};
+    for (const Design<double>& design : study.combinations) designs.push_back(&design);
     complete_metrics(study.options, designs);
     if (study.design.mass) study.options.metrics.set(std::size_t(Metric::lift_to_weight));
     attempt([&] { study.hold = read_hold(study.design); });
+    attempt([&] { check_combinations(study); });
     attempt([&] {
       if (const TomlNode* fit = root_.find("fit")) read_fit(*fit);
     });
     attempt([&] { read_parameters(); });
     finish();
     read_correlations();
-    if (study.parameters.empty()) {
-      refuse(*study_, "study", "nothing is uncertain; give [[parameter]] sections or [fit]");
+    for (const ModelChoice& choice : study.choices) {
+      if (choice.name == study.covariance_name) {
+        refuse(*root_.find("choice"), "choice.name", fmt::format("{} is the name of the fit", in_quotes(choice.name)));
+      }
     }
-    const std::size_t dimensions = (study.indices ? 2 : 1) * study.parameters.size();
+    const std::size_t inputs = study.parameters.size() + study.choices.size();
+    if (inputs == 0) {
+      refuse(*study_, "study", "nothing is uncertain; give [[parameter]] or [[choice]] sections or [fit]");
+    }
+    const std::size_t dimensions = (study.indices ? 2 : 1) * inputs;
     if (dimensions > ScrambledSobol::max_dimensions) {
       refuse(*study_, "parameter",
-             fmt::format("{} parameters are more than a study can vary at once ({})", study.parameters.size(),
+             fmt::format("{} parameters{} are more than a study can vary at once ({})", inputs,
+                         study.choices.empty() ? "" : " and choices",
                          ScrambledSobol::max_dimensions / (study.indices ? 2 : 1)));
     }
-    check_centre();
+    if (study.choices.empty()) at_means(study.design, "", places_.at(study.parameters.front().parameter.key));
+    for (std::size_t v = 0; v < study.combinations.size(); ++v) {
+      const std::string with = fmt::format("with {}, ", in_words(study, v));
+      check_means(study, v, at_means(study.combinations[v], with, place_of_combination(study, v)));
+    }
     return study;
   }
 
@@ -215,6 +229,9 @@ class ToleranceReader : public detail::StudySections {
 
   void add_key(const TomlNode& node, const std::string& where, const std::string& key) {
     if (!used_.insert(key).second) refuse(node, where, fmt::format("{} is given already", key));
+    if (const ModelChoice* choice = choice_of(study_result_->choices, key)) {
+      refuse(node, where, fmt::format("the choice {} sets {} already", choice->name, key));
+    }
     places_[key] = place_of(node);
   }
 
@@ -286,24 +303,30 @@ class ToleranceReader : public detail::StudySections {
     }
   }
 
-  /// The parameters' means are a vehicle that could be built.
-  void check_centre() {
-    Design<double> centre = study_result_->design;
-    for (const UncertainParameter& p : study_result_->parameters) p.parameter.set(centre, p.distribution.mean());
+  /// The vehicle at the parameters' means, which could be built. `with`: the alternatives it has, in words; refused at
+  /// `place` where no parameter is to blame.
+  Design<double> at_means(const Design<double>& design, const std::string& with, SourceLocation place) const {
+    Design<double> centre = design;
+    for (const UncertainParameter& p : study_result_->parameters) {
+      if (!p.parameter.value(design)) {
+        refuse(places_.at(p.parameter.key), p.parameter.key, with + "the vehicle does not have it");
+      }
+      p.parameter.set(centre, p.distribution.mean());
+    }
     for (const UncertainParameter& p : study_result_->parameters) {
       const auto found = p.parameter.value(centre);
       if (!found || *found != p.distribution.mean()) {
-        refuse(places_.at(p.parameter.key), p.parameter.key, "another uncertain parameter takes its place");
+        refuse(places_.at(p.parameter.key), p.parameter.key, with + "another uncertain parameter takes its place");
       }
     }
     try {
       validate(centre);
     } catch (const ParameterError& error) {
-      const auto place = places_.find(error.key());
-      const std::string& first = study_result_->parameters.front().parameter.key;
-      refuse(place == places_.end() ? places_.at(first) : place->second, error.key(),
-             fmt::format("at the parameters' means: {}", error.reason()));
+      const auto parameter = places_.find(error.key());
+      refuse(parameter == places_.end() ? place : parameter->second, error.key(),
+             fmt::format("{}at the parameters' means: {}", with, error.reason()));
     }
+    return centre;
   }
 
   fs::path folder_;

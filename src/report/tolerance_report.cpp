@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "report/choice_report.hpp"
 #include "report/described.hpp"
-#include "report/figure.hpp"
-#include "report/layout.hpp"
 #include "report/result_schemas.hpp"
 #include "report/result_trees.hpp"
-#include "report/sweep_scales.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/describe.hpp"
@@ -77,7 +75,7 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   fmt::format_to(out, "{} {} samples", base_count(study), method);
   if (study.indices) fmt::format_to(out, ", {} vehicles with those for the indices", result.vehicles);
   if (study.hold) text += "; " + describe(*study.hold);
-  fmt::format_to(out, "\n\nUncertain parameters\n");
+  fmt::format_to(out, "\n\nUncertain parameters{}\n", study.choices.empty() ? "" : " and choices of model");
   for (std::size_t k = 0; k < study.parameters.size(); ++k) {
     const UncertainParameter& p = study.parameters[k];
     fmt::format_to(out, "  {:<34}{}\n", p.parameter.key,
@@ -86,6 +84,10 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   for (const Correlation& c : study.correlations) {
     fmt::format_to(out, "  correlation {:.3g} of {} with {}\n", c.value, study.parameters[c.first].parameter.key,
                    study.parameters[c.second].parameter.key);
+  }
+  for (const ModelChoice& choice : study.choices) {
+    const std::string line = fmt::format("  {:<34}choice, {}", choice.name, alternatives_text(choice));
+    fmt::format_to(out, "{}\n", line.size() <= 100 ? line : wrapped(line, 100, 44));
   }
 
   fmt::format_to(out, "\nProbability                             95 % interval\n");
@@ -119,6 +121,14 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
     fmt::format_to(out, "{}\n", wrapped(reason, 100, 2));
   }
 
+  if (!study.choices.empty() && result.centre.status == SweepStatus::flapping) {
+    const std::string reason = fmt::format(
+        "The linear prediction is that of the most likely alternatives, {}. It has no "
+        "share for a choice.",
+        likeliest_text(study));
+    fmt::format_to(out, "{}\n", wrapped(reason, 100, 2));
+  }
+
   fmt::format_to(out, "\n{:<34}{:>11}{:>11}{:>11}{:>11} {:>11}{:>11}\n", "Metric (those that flap)", "mean",
                  "deviation", "2.5 %", "97.5 %", "lin. mean", "lin. dev.");
   const auto cell = [](double x) { return std::isfinite(x) ? fmt::format("{:.4g}", x) : std::string("-"); };
@@ -137,7 +147,10 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
     fmt::format_to(out, "linear\n");
     std::vector<std::size_t> order(inputs.size());
     for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
-    const auto weight = [&](std::size_t i) { return sobol ? o.indices->inputs[i].total : o.linear_share[i]; };
+    const auto weight = [&](std::size_t i) {
+      if (sobol) return o.indices->inputs[i].total;
+      return inputs[i].choice ? -1.0 : o.linear_share[i];
+    };
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weight(a) > weight(b); });
     double sum = 0.0;
     for (const std::size_t i : order) {
@@ -148,14 +161,16 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
         fmt::format_to(out, "{:<26}{:<26}", share_text(s.first, s.first_lower, s.first_upper),
                        share_text(s.total, s.total_lower, s.total_upper));
       }
-      fmt::format_to(out, "{}\n", o.linear_share.empty() ? "-" : fmt::format("{:.3f}", o.linear_share[i]));
+      const bool linear = !o.linear_share.empty() && !inputs[i].choice;
+      fmt::format_to(out, "{}\n", linear ? fmt::format("{:.3f}", o.linear_share[i]) : "-");
     }
     if (sobol) fmt::format_to(out, "  {:<34}{:5.3f}: the rest are interactions and noise\n", "sum of first order", sum);
     if (sobol && o.indices->rows < study.count) {
-      fmt::format_to(out, "{}\n",
-                     wrapped(fmt::format("  from {} of {} rows: in the others a vehicle does not flap", o.indices->rows,
-                                         study.count),
-                             100, 2));
+      fmt::format_to(
+          out, "{}\n",
+          wrapped(fmt::format("  from {} of {} rows: in the others a vehicle does not flap{}", o.indices->rows,
+                              study.count, study.choices.empty() ? "" : " or has no such metric"),
+                  100, 2));
     }
   };
   if (const ToleranceOutput* o = main_output(result)) sources(*o);
@@ -172,10 +187,22 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
         "{} stands for {}: they are correlated, so they vary together and share one index.", factor.name, names);
     fmt::format_to(out, "\n{}\n", wrapped(sentence, 100, 0));
   }
-  return text;
+  return text + text_choices(study, result);
 }
 
 namespace described {
+
+const Description<Probability>& probability_description() {
+  using R = Probability;
+  static const Description<R> description =
+      Description<R>()
+          .always("count", "", "samples", &R::count)
+          .always("share", "1", "of all samples", &R::share, schema::any_number)
+          .always("lower_95", "1", "lower end of its 95 % interval", &R::lower, schema::any_number)
+          .always("upper_95", "1", "upper end", &R::upper, schema::any_number);
+  return description;
+}
+
 namespace {
 
 /// What a tolerance study's --json is made from.
@@ -204,7 +231,8 @@ std::vector<Contribution> contributions(const OutputFound& found) {
   std::vector<Contribution> all;
   if (o.linear_share.empty() && !o.indices) return all;
   for (std::size_t i = 0; i < found.factors.size(); ++i) {
-    all.push_back({found.factors[i].name, o.linear_share.empty() ? nullptr : &o.linear_share[i],
+    all.push_back({found.factors[i].name,
+                   o.linear_share.empty() || found.factors[i].choice ? nullptr : &o.linear_share[i],
                    o.indices ? &o.indices->inputs[i] : nullptr});
   }
   return all;
@@ -218,7 +246,7 @@ Description<Contribution> contribution_description() {
   };
   using Interval = std::array<double, 2>;
   return Description<R>()
-      .always("name", "", "the parameter, or the correlated ones together", &R::name)
+      .always("name", "", "the parameter, the correlated ones together, or the choice", &R::name)
       .sometimes("linear_share", "1", "share of the variance, from the gradient", &R::linear_share)
       .sometimes("first", "1", "Sobol index of first order", indexed([](const SobolIndex& s) { return s.first; }))
       .sometimes("first_95", "1", "95 % interval",
@@ -255,17 +283,6 @@ const Description<OutputFound>& output_description() {
           .sometimes("rows", "", "rows of the sample behind the Sobol indices", [](const R& r) {
             return r.output.indices ? std::optional(r.output.indices->rows) : std::nullopt;
           });
-  return description;
-}
-
-const Description<Probability>& probability_description() {
-  using R = Probability;
-  static const Description<R> description =
-      Description<R>()
-          .always("count", "", "samples", &R::count)
-          .always("share", "1", "of all samples", &R::share, schema::any_number)
-          .always("lower_95", "1", "lower end of its 95 % interval", &R::lower, schema::any_number)
-          .always("upper_95", "1", "upper end", &R::upper, schema::any_number);
   return description;
 }
 
@@ -318,6 +335,14 @@ const Description<ToleranceFound>& tolerance_description() {
           .always("vehicles", "", "solved, those for Sobol indices included",
                   [](const R& r) { return r.result.vehicles; })
           .parts("parameters", "the uncertain ones", parameter, parameters)
+          .sometimes(
+              "choices", "", "of model, where the study has some",
+              [](const R& r) {
+                std::vector<ChoiceFound> all;
+                for (std::size_t k = 0; k < r.study.choices.size(); ++k) all.push_back({r.study, r.result, k});
+                return all.empty() ? std::nullopt : std::optional(choice_description().list(all));
+              },
+              schema::listed(choice_description().schema()))
           .part("probability", "", probabilities_description(), result)
           .part("outside_domain", "samples outside each limit of the model's domain", limits_description(), result)
           .always("allow_extrapolation", "", "samples outside the domain count",
@@ -348,124 +373,6 @@ detail::Json detail::tolerance_tree(const ToleranceStudy& study, const Tolerance
 
 std::string json_tolerance(const ToleranceStudy& study, const ToleranceResult& result) {
   return detail::dumped(detail::tolerance_tree(study, result));
-}
-
-void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, const ToleranceOutput& output,
-                    PlotFormat format, const std::filesystem::path& file) {
-  std::vector<double> values;
-  const auto all = samples_of(study, columns, *output.metric);
-  std::size_t outside = 0;
-  for (std::size_t n = 0; n < all.size(); ++n) {
-    if (!std::isfinite(all[n])) continue;
-    if (columns.counts(n, study.allow_extrapolation)) values.push_back(all[n]);
-    else ++outside;
-  }
-  std::sort(values.begin(), values.end());
-  const Display display = display_of(*output.metric, std::max(std::abs(values.front()), std::abs(values.back())));
-  for (double& x : values) x *= display.factor;
-  const double linear_mean = display.factor * output.linear_mean,
-               linear_deviation = display.factor * output.linear_deviation;
-  // Freedman and Diaconis, 1981; the few samples beyond the drawn range are in the tails.
-  const auto quantile = [&](double p) { return values[std::size_t(p * double(values.size() - 1))]; };
-  const double low = quantile(0.001), high = quantile(0.999);
-  double width = 2.0 * (quantile(0.75) - quantile(0.25)) / std::cbrt(double(values.size()));
-  if (!(width > (high - low) / 200.0)) width = (high - low) / 50.0;
-  const int bins = std::max(1, int(std::ceil((high - low) / width)));
-  std::vector<double> counts(std::size_t(bins), 0.0);
-  for (const double x : values) {
-    if (x >= low && x <= high) ++counts[std::min(std::size_t(bins - 1), std::size_t((x - low) / width))];
-  }
-
-  const auto inputs = factors(study);
-  std::vector<std::size_t> order;
-  const bool sobol = output.indices && output.indices->rows > 1;
-  const auto weight = [&](std::size_t i) {
-    return sobol ? output.indices->inputs[i].total : output.linear_share.empty() ? 0.0 : output.linear_share[i];
-  };
-  for (std::size_t i = 0; i < inputs.size(); ++i) order.push_back(i);
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return weight(a) > weight(b); });
-  const bool linear = linear_deviation > 0.0;
-  const bool sources = sobol || !output.linear_share.empty();
-
-  const double rows_height = sources ? 0.24 * double(inputs.size()) : 0.0;
-  const double inches = 2.55 + (sources ? 0.95 + rows_height : 0.0);
-  Figure figure(format, inches);
-  const auto y = [&](double from_top) { return 1.0 - from_top / inches; };
-  figure.add("$bins << END\n");
-  double highest = 0.0;
-  for (int b = 0; b < bins; ++b) {
-    const double density = counts[std::size_t(b)] / (double(values.size()) * width);
-    highest = std::max(highest, density);
-    figure.add("{} {}\n", low + (b + 0.5) * width, density);
-  }
-  figure.add("END\nset multiplot\nset lmargin at screen 0.07\nset rmargin at screen 0.97\n");
-  figure.add("set tmargin at screen {}\nset bmargin at screen {}\n", y(0.62), y(2.1));
-  const std::string title = study.title.empty() ? "Tolerance" : study.title;
-  page_title(figure, title, 0.12);
-  std::string drawn = fmt::format("{} vehicles that flap", values.size());
-  if (outside > 0) drawn += fmt::format(" ({} outside the domain left out)", outside);
-  figure.key_entry(0.07, y(0.32), "lw 5 lc rgb '#cfcfcf'", drawn);
-  if (linear) figure.key_entry(0.07, y(0.48), style::second_curve, "linear prediction from the gradient");
-  if (output.metric == Metric::lift_to_weight) figure.key_entry(0.6, y(0.32), style::reference_line, "hover");
-  const MetricInfo& info = metric_table()[std::size_t(*output.metric)];
-  figure.text(info.long_name + display.in_brackets(), 7.5, fmt::format("screen 0.52,{} center", y(2.42)));
-  double left = low, right = high;
-  if (linear) {
-    left = std::min(left, linear_mean - 3.0 * linear_deviation);
-    right = std::max(right, linear_mean + 3.0 * linear_deviation);
-    highest = std::max(highest, 0.4 / linear_deviation);
-  }
-  const bool one_inside = output.metric == Metric::lift_to_weight && left < 1.0 && right > 1.0;
-  figure.add("unset ytics\nset border 1\nset xrange [{}:{}]\nset yrange [0:{}]\n", left, right, 1.08 * highest);
-  figure.add("set style fill solid 1.0 noborder\n");
-  if (one_inside) figure.add("set arrow 900 from 1,graph 0 to 1,graph 1 nohead front {}\n", style::reference_line);
-  figure.add("set samples 400\nplot $bins using 1:2:({}) with boxes lc rgb '#cfcfcf'", width);
-  if (linear) {
-    figure.add(", exp(-0.5*((x-{0})/{1})**2)/({1}*sqrt(2*pi)) with lines {2}", linear_mean, linear_deviation,
-               style::second_curve);
-  }
-  figure.add("\n");
-  if (sources) {
-    figure.next_panel();
-    const double top = 2.98, bottom = top + rows_height;
-    figure.add("set tmargin at screen {}\nset bmargin at screen {}\nset lmargin at screen 0.46\n", y(top), y(bottom));
-    figure.text("share of the variance", 7.5, fmt::format("screen 0.07,{} left", y(top - 0.14)));
-    figure.text("first order", style::text_size, fmt::format("screen 0.49,{} left", y(top - 0.14)));
-    figure.text("total", style::text_size, fmt::format("screen 0.67,{} left", y(top - 0.14)));
-    figure.text("linear", style::text_size, fmt::format("screen 0.82,{} left", y(top - 0.14)));
-    figure.add(
-        "set label 901 '' at screen 0.475,{0} point pt 7 ps 0.45 lc rgb '#000000'\n"
-        "set label 902 '' at screen 0.655,{0} point pt 5 ps 0.45 lc rgb '#707070'\n"
-        "set label 903 '' at screen 0.805,{0} point pt 8 ps 0.6 lc rgb '#000000'\n",
-        y(top - 0.14));
-    figure.add("$sources << END\n");
-    double max_share = 0.1;
-    for (std::size_t r = 0; r < order.size(); ++r) {
-      const std::size_t i = order[r];
-      const SobolIndex none{absent, absent, absent, absent, absent, absent};
-      const SobolIndex s = sobol ? output.indices->inputs[i] : none;
-      figure.add("{} {} {} {} {} {} {} {}\n", -double(r), s.first, s.first_lower, s.first_upper, s.total, s.total_lower,
-                 s.total_upper, output.linear_share.empty() ? absent : output.linear_share[i]);
-      for (const double x : {s.first_upper, s.total_upper, weight(i)}) {
-        if (std::isfinite(x)) max_share = std::max(max_share, x);
-      }
-    }
-    figure.add("END\n");
-    for (std::size_t r = 0; r < order.size(); ++r) {
-      const double row = top + rows_height * (double(r) + 0.5) / double(order.size());
-      fitted_text(figure, words(inputs[order[r]].name), style::text_size, 0.42 * format.width, 0.44 * format.width, row,
-                  "right");
-    }
-    figure.add("set xrange [{}:{}]\nset yrange [{}:0.5]\nset border 3\nset datafile missing 'nan'\n", -0.03 * max_share,
-               1.04 * max_share, 0.5 - double(order.size()));
-    figure.add(
-        "plot $sources using 2:($1+0.22):3:4 with xerrorbars pt 7 ps 0.45 lc rgb '#000000', "
-        "$sources using 5:1:6:7 with xerrorbars pt 5 ps 0.45 lc rgb '#707070', "
-        "$sources using 8:($1-0.22) with points pt 8 ps 0.6 lc rgb '#000000'\n");
-  }
-
-  figure.add("unset multiplot\nunset output\n");
-  run_gnuplot(figure.script(), file);
 }
 
 }  // namespace wingbeat

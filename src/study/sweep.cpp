@@ -34,6 +34,7 @@ std::optional<Hold> set_numbers(const Sweep& sweep, std::span<const std::uint64_
 }
 
 std::size_t variant_at(const Sweep& sweep, std::span<const std::uint64_t> place) {
+  if (!sweep.drawn_variants.empty()) return sweep.drawn_variants[std::size_t(place.back())];
   std::uint64_t variant = 0;
   for (std::size_t a = 0; a < place.size(); ++a) variant += sweep.variant_stride[a] * place[a];
   return std::size_t(variant);

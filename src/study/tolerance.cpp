@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 
+#include "study/model_choices.hpp"
 #include "wingbeat/cycle/metric_gradients.hpp"
 
 namespace wingbeat {
@@ -88,16 +89,22 @@ void describe(ToleranceOutput& output, std::span<const double> values) {
   output.max = there.back();
 }
 
+/// Whether every vehicle has a weight.
+bool states_mass(const ToleranceStudy& study) {
+  return study.design.mass && std::all_of(study.combinations.begin(), study.combinations.end(),
+                                          [](const Design<double>& design) { return design.mass.has_value(); });
+}
+
 }  // namespace
 
 std::vector<ToleranceFactor> factors(const ToleranceStudy& study) {
   std::vector<ToleranceFactor> result;
   const std::vector<std::size_t> together = correlated(study);
-  if (!together.empty()) result.push_back({study.covariance_name, together});
+  if (!together.empty()) result.push_back({study.covariance_name, together, {}});
   const auto groups = linked(study);
   for (std::size_t k = 0; k < study.parameters.size(); ++k) {
     if (study.parameters[k].correlated) continue;
-    ToleranceFactor factor{study.parameters[k].parameter.key, {k}};
+    ToleranceFactor factor{study.parameters[k].parameter.key, {k}, {}};
     const auto own = std::find_if(groups.begin(), groups.end(), [k](const auto& group) {
       return std::find(group.begin(), group.end(), k) != group.end();
     });
@@ -108,6 +115,7 @@ std::vector<ToleranceFactor> factors(const ToleranceStudy& study) {
     }
     result.push_back(std::move(factor));
   }
+  for (std::size_t k = 0; k < study.choices.size(); ++k) result.push_back({study.choices[k].name, {}, k});
   return result;
 }
 
@@ -143,7 +151,7 @@ Sweep tolerance_sweep(const ToleranceStudy& study) {
   const std::size_t d = study.parameters.size();
   const std::size_t samples = study.indices ? 2 : 1;
   std::function<double(std::uint64_t, std::size_t)> uniform = PseudoRandom{study.seed};
-  if (study.method == ToleranceMethod::sobol) uniform = ScrambledSobol(samples * d, study.seed);
+  if (study.method == ToleranceMethod::sobol && d > 0) uniform = ScrambledSobol(samples * d, study.seed);
 
   const std::vector<std::size_t> together = correlated(study);
   Eigen::MatrixXd root;
@@ -209,7 +217,12 @@ Sweep tolerance_sweep(const ToleranceStudy& study) {
 
   Sweep sweep;
   sweep.axes.push_back(std::move(axis));
-  sweep.variants.push_back({study.design, study.condition, true});
+  if (study.choices.empty()) {
+    sweep.variants.push_back({study.design, study.condition, true});
+  } else {
+    for (const Design<double>& design : study.combinations) sweep.variants.push_back({design, study.condition, true});
+    sweep.drawn_variants = drawn_combinations(study);
+  }
   sweep.variant_stride = {0};
   sweep.hold = study.hold;
   sweep.options = study.options;
@@ -266,12 +279,14 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
     if (result.centre.domain.any() && !study.allow_extrapolation) return;
     const auto slope = [&](std::size_t k) { return result.centre.gradients[k][std::size_t(metric)]; };
     double variance = 0.0;
-    std::vector<double> parts(inputs.size(), 0.0);
-    for (std::size_t i = 0; i < inputs.size(); ++i) {
-      for (const std::size_t k : inputs[i].parameters) {
-        for (const std::size_t l : inputs[i].parameters) parts[i] += slope(k) * covariance[k][l] * slope(l);
+    std::vector<double> parts;
+    for (const ToleranceFactor& factor : inputs) {
+      double part = 0.0;
+      for (const std::size_t k : factor.parameters) {
+        for (const std::size_t l : factor.parameters) part += slope(k) * covariance[k][l] * slope(l);
       }
-      variance += parts[i];
+      variance += part;
+      parts.push_back(factor.choice ? absent : part);
     }
     if (!std::isfinite(variance)) return;
     output.linear_mean = result.centre.metrics[metric];
@@ -290,6 +305,14 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
         sobol_indices(values.subspan(0, rows), values.subspan(rows, rows), mixed, study.resamples, study.seed);
   };
 
+  const std::vector<std::uint32_t> combinations = drawn_combinations(study);
+  const auto add_output = [&](ToleranceOutput& output, std::span<const double> values) {
+    describe(output, values.subspan(0, base));
+    if (!study.choices.empty()) detail::add_choice_effects(output, study, values.subspan(0, base), combinations);
+  };
+  std::vector<double> lift_to_weight;
+  double carries = 1.0;
+
   std::size_t column = 0;
   for (int m = 0; m < metric_count; ++m) {
     if (!study.options.metrics[std::size_t(m)]) continue;
@@ -300,18 +323,18 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
     ToleranceOutput output;
     output.name = metric_info(Metric(m)).key;
     output.metric = Metric(m);
-    describe(output, std::span(values).subspan(0, base));
+    add_output(output, values);
     add_linear(output, Metric(m));
     // The Floquet multiplier stands near zero, where its error is all there is.
     const bool varies = output.deviation > study.options.tolerance * std::abs(output.mean);
     if (varies && Metric(m) != Metric::floquet_multiplier_max) add_indices(output, values);
     result.outputs.push_back(std::move(output));
 
-    if (Metric(m) != Metric::lift_to_weight || !study.design.mass) continue;
+    if (Metric(m) != Metric::lift_to_weight || !states_mass(study)) continue;
     std::vector<double> hovers(values.size());
     // A held lift is as exact as the tolerance.
     const bool held = study.hold && study.hold->held == Held::lift_to_weight;
-    const double carries = held ? 1.0 - study.options.tolerance : 1.0;
+    if (held) carries -= study.options.tolerance;
     std::uint64_t count = 0;
     for (std::size_t n = 0; n < values.size(); ++n) {
       hovers[n] = values[n] >= carries ? 1.0 : 0.0;
@@ -322,10 +345,11 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
     if (lift.linear_deviation > 0.0 && !held) {
       result.linear_hover = normal_probability((lift.linear_mean - 1.0) / lift.linear_deviation);
     }
+    lift_to_weight = std::move(values);
     if (count == 0 || count == base) continue;
     ToleranceOutput indicator;
     indicator.name = "hovers";
-    describe(indicator, std::span(hovers).subspan(0, base));
+    add_output(indicator, hovers);
     add_indices(indicator, hovers);
     result.outputs.push_back(std::move(indicator));
   }
@@ -334,10 +358,11 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
     for (std::size_t n = 0; n < flaps.size(); ++n) flaps[n] = columns.status[n] == 0 ? 1.0 : 0.0;
     ToleranceOutput indicator;
     indicator.name = "flaps";
-    describe(indicator, std::span(flaps).subspan(0, base));
+    add_output(indicator, flaps);
     add_indices(indicator, flaps);
     result.outputs.push_back(std::move(indicator));
   }
+  result.choices = detail::alternative_samples(study, columns, combinations, lift_to_weight, carries);
   return result;
 }
 

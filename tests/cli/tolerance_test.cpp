@@ -123,8 +123,9 @@ TEST_F(Tolerance, CorrelationsOfParameters) {
 }
 
 TEST_F(Tolerance, BadStudiesAreRefusedWithTheirPlace) {
-  EXPECT_EQ(complaint(""),
-            "wingbeat: study.toml:1:2: study: nothing is uncertain; give [[parameter]] sections or [fit]\n");
+  EXPECT_EQ(
+      complaint(""),
+      "wingbeat: study.toml:1:2: study: nothing is uncertain; give [[parameter]] or [[choice]] sections or [fit]\n");
   EXPECT_EQ(complaint(friction + friction),
             "wingbeat: study.toml:8:1: parameter.key: friction.radius is given already\n");
   EXPECT_EQ(complaint("[[parameter]]\nkey = \"friction.radios\"\n"),

@@ -59,7 +59,10 @@ struct Sweep {
   std::vector<SweepAxis> axes;  ///< the last varies fastest
   std::vector<SweepVariant> variants;
   std::vector<std::uint64_t> variant_stride;  ///< of each axis in `variants`; 0 for an axis without choices
-  std::optional<Hold> hold;                   ///< its value may be an axis instead
+  /// Where choices are drawn: that in `variants` by place along the last axis, in the stead of variant_stride; or
+  /// empty.
+  std::vector<std::uint32_t> drawn_variants;
+  std::optional<Hold> hold;  ///< its value may be an axis instead
   EnsembleOptions options;
   bool allow_extrapolation = false;  ///< designs outside the model's domain count as best, feasible, ... too
 

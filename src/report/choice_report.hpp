@@ -1,0 +1,33 @@
+// What choices of model are worth, as text and JSON: parts of the report of a tolerance study.
+#pragma once
+
+#include <string>
+
+#include "report/described.hpp"
+#include "wingbeat/study/tolerance.hpp"
+
+namespace wingbeat {
+
+/// "translational-2022 50 %, whitney-wood-2010 50 %"
+std::string alternatives_text(const ModelChoice& choice);
+/// "coefficients = translational-2022, added-mass = none": the vehicle of the linear prediction.
+std::string likeliest_text(const ToleranceStudy& study);
+/// A table for each choice: what its alternatives do, and every metric that varies where each of them is chosen.
+std::string text_choices(const ToleranceStudy& study, const ToleranceResult& result);
+
+namespace described {
+
+/// A choice of a study with what came out.
+struct ChoiceFound {
+  const ToleranceStudy& study;
+  const ToleranceResult& result;
+  std::size_t place;
+  const ModelChoice& choice() const { return study.choices[place]; }
+};
+const Description<ChoiceFound>& choice_description();
+
+const Description<Probability>& probability_description();
+
+}  // namespace described
+
+}  // namespace wingbeat
