@@ -117,6 +117,7 @@ TEST_F(Figures, Fits) {
 TEST_F(Figures, OptimaAndTolerance) {
   look({"optimise", study("optimise-motor")});
   look({"tolerance", study("tolerance-hover")});
+  look({"tolerance", study("tolerance-model-form")});
 }
 
 TEST_F(Figures, StepResponses) { look({"linearise", springs, "--no-maps"}); }

@@ -160,4 +160,129 @@ TEST_F(Tolerance, AVehicleThatNeverFlapsSaysSo) {
   EXPECT_THAT(outcome.out, HasSubstr("No linear prediction: at the parameters' means the vehicle is locked"));
 }
 
+const std::string formulations =
+    "[[choice]]\nname = \"formulation\"\nalternative = [\n  { name = \"rod-force\", weight = 3 },\n"
+    "  { name = \"virtual-work\", set = { transmission.formulation = \"virtual-work\" } },\n]\n";
+const std::string coefficients =
+    "[[choice]]\nname = \"coefficients\"\n[[choice.alternative]]\nname = \"translational-2022\"\n"
+    "[[choice.alternative]]\nname = \"own\"\n"
+    "set.aerodynamics.coefficients.lift = { offset = 0, amplitude = 1.8, rate = 2, phase = 0 }\n"
+    "set.aerodynamics.coefficients.drag = { offset = 1.9, amplitude = -1.5, rate = 2, phase = 0 }\n";
+
+TEST_F(Tolerance, ChoicesOfModelInReportDataSetFigureAndJson) {
+  const std::string file = study("hold = { voltage = \"5.5 V\" }\nmetrics = [\"lift_mean_n\"]\n[samples]\ncount = 128\n" +
+                                 friction + formulations + coefficients);
+  const Outcome text = run({"tolerance", file, "-o", path("t.nc"), "--plot", path("t.svg")});
+  ASSERT_EQ(text.status, 0) << text.err;
+  for (const char* part :
+       {"256 scrambled Sobol samples, 640 vehicles with those for the indices",
+        "Uncertain parameters and choices of model\n",
+        "  formulation                       choice, rod-force 75 %, virtual-work 25 %\n",
+        "The linear prediction is that of the most likely alternatives, formulation = rod-force,\n"
+        "  coefficients = translational-2022. It has no share for a choice.\n",
+        "What the choice of formulation is worth\n", "What the choice of coefficients is worth\n",
+        "  mean +- deviation                 difference  parameters   translational-2022                  own\n"}) {
+    EXPECT_THAT(text.out, HasSubstr(part));
+  }
+  EXPECT_THAT(text.out, testing::ContainsRegex("  virtual-work +64     100.00 %    [0-9.]+ % "));
+  EXPECT_THAT(text.out, testing::ContainsRegex("\n  formulation +0[^\n]*    -\n"));
+  for (std::size_t begin = 0, end; (end = text.out.find('\n', begin)) != std::string::npos; begin = end + 1) {
+    EXPECT_LE(end - begin, 102U) << text.out.substr(begin, end - begin);
+  }
+  EXPECT_THAT(read(path("t.svg")), HasSubstr("formulation"));
+
+  const Json json = run({"tolerance", file, "--json", "--threads", "1"}).json();
+  ASSERT_EQ(json["choices"].size(), 2U);
+  const Json& choice = json["choices"][0];
+  EXPECT_EQ(choice["name"], "formulation");
+  EXPECT_EQ(choice["keys"], Json::array({"transmission.formulation"}));
+  EXPECT_EQ(choice["linear_alternative"], "rod-force");
+  EXPECT_EQ(choice["alternatives"][0]["share"], 0.75);
+  EXPECT_EQ(choice["alternatives"][1]["samples"], 64);
+  EXPECT_EQ(json["outputs"]["lift_mean_n"]["factors"][1]["name"], "formulation");
+  EXPECT_FALSE(json["outputs"]["lift_mean_n"]["factors"][1].contains("linear_share"));
+  EXPECT_TRUE(json["outputs"]["lift_mean_n"]["factors"][0].contains("linear_share"));
+
+  // The data set's own samples give what the report says.
+  const wingbeat::NetcdfReader data(path("t.nc"));
+  const auto lift = data.read("lift_to_weight"), chosen = data.read("choice_formulation");
+  ASSERT_EQ(chosen.size(), 256U);
+  double sums[] = {0.0, 0.0}, counts[] = {0.0, 0.0}, hovers[] = {0.0, 0.0};
+  for (std::size_t n = 0; n < 256; ++n) {
+    const std::size_t a = std::size_t(chosen[n]);
+    ASSERT_LT(a, 2U);
+    sums[a] += lift[n];
+    counts[a] += 1.0;
+    hovers[a] += lift[n] >= 1.0;
+  }
+  for (std::size_t a = 0; a < 2; ++a) {
+    const Json& alternative = choice["alternatives"][a];
+    EXPECT_EQ(alternative["samples"], counts[a]);
+    EXPECT_EQ(alternative["hover"]["count"], hovers[a]);
+    EXPECT_NEAR(alternative["outputs"]["lift_to_weight"]["mean"].get<double>(), sums[a] / counts[a], 1e-12);
+  }
+  EXPECT_NEAR(choice["outputs"]["lift_to_weight"]["difference"].get<double>(),
+              sums[1] / counts[1] - sums[0] / counts[0], 1e-12);
+  EXPECT_EQ(data.read("choice_coefficients_mean").size(), 2 * json["outputs"].size());
+  EXPECT_EQ(data.read("choice_formulation_share"), (std::vector<double>{0.75, 0.25}));
+  EXPECT_EQ(data.read("deviation_by_parameters").size(), json["outputs"].size());
+}
+
+TEST_F(Tolerance, ManyAlternativesGoOnInFurtherColumns) {
+  std::string list = "[[choice]]\nname = \"mass\"\nalternative = [\n";
+  for (int a = 1; a <= 5; ++a) {
+    list += "  { name = \"mass-of-copy-" + std::to_string(a) + "\", set.vehicle.mass = \"3." + std::to_string(a) +
+            " g\" },\n";
+  }
+  const Outcome text = run({"tolerance", study("metrics = [\"lift_mean_n\"]\n[samples]\ncount = 16\nindices = false\n" +
+                                               list + "]\n" + friction)});
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_THAT(text.out, HasSubstr("  mean +- deviation                 difference  parameters       mass-of-copy-1       "
+                                  "mass-of-copy-2\n"));
+  EXPECT_THAT(text.out, HasSubstr("  mean +- deviation                      mass-of-copy-3       mass-of-copy-4       "
+                                  "mass-of-copy-5\n"));
+}
+
+TEST_F(Tolerance, AChoiceAloneNeedsNoParameter) {
+  const Json json = run({"tolerance", study("[samples]\ncount = 32\n" + formulations), "--json"}).json();
+  EXPECT_EQ(json["parameters"].size(), 0U);
+  EXPECT_EQ(json["samples"], 64);
+  EXPECT_GT(json["choices"][0]["outputs"]["lift_mean_n"]["difference"].get<double>(), 0.0);
+}
+
+TEST_F(Tolerance, BadChoicesAreRefusedWithTheirPlace) {
+  const std::string begin = "[[choice]]\nname = \"mass\"\n";
+  const auto choice = [&](const std::string& one, const std::string& other) {
+    return begin + "alternative = [\n  " + one + ",\n  " + other + ",\n]\n";
+  };
+  const std::string light = "{ name = \"light\", set.vehicle.mass = \"3 g\" }";
+  EXPECT_EQ(complaint("[[choice]]\nalternative = []\n"),
+            "wingbeat: study.toml:3:1: choice.name: missing; expected a name such as \"coefficients\"\n");
+  EXPECT_EQ(complaint("[[choice]]\nname = \"lift and drag\"\n"),
+            "wingbeat: study.toml:4:1: choice.name: expected a name of letters, digits, '-' and '_', at most 40 of them, "
+            "got \"lift and drag\"\n");
+  EXPECT_EQ(complaint(begin),
+            "wingbeat: study.toml:3:1: choice.alternative: missing; expected [[choice.alternative]] sections, each with "
+            "name, weight and set\n");
+  EXPECT_EQ(complaint(begin + "alternative = [" + light + "]\n"),
+            "wingbeat: study.toml:3:1: choice.alternative: the choice mass has one; expected two alternatives or more\n");
+  EXPECT_EQ(complaint(choice(light, "{ set.vehicle.mass = \"4 g\" }")),
+            "wingbeat: study.toml:7:3: choice.alternative.name: missing; expected a name such as "
+            "\"translational-2022\"\n");
+  EXPECT_EQ(complaint(choice(light, light)),
+            "wingbeat: study.toml:7:5: choice.alternative.name: \"light\" is the name of another alternative\n");
+  EXPECT_EQ(complaint(choice(light, "{ name = \"b\", weight = 0 }")),
+            "wingbeat: study.toml:7:17: choice.alternative.weight: must be > 0\n");
+  EXPECT_EQ(complaint(choice(light, "{ name = \"b\", wait = 1 }")),
+            "wingbeat: study.toml:7:17: choice.alternative.wait: unknown key; did you mean choice.alternative.weight?\n");
+  EXPECT_EQ(complaint(choice("{ name = \"a\" }", "{ name = \"b\" }")),
+            "wingbeat: study.toml:3:1: choice.alternative: no alternative of mass sets anything; expected set = { ... } "
+            "with vehicle-file keys\n");
+  EXPECT_EQ(complaint(choice(light, "{ name = \"b\", set = 3 }")),
+            "wingbeat: study.toml:7:17: choice.alternative.set: expected a table of vehicle-file keys, got 3\n");
+  EXPECT_EQ(complaint(choice(light, "{ name = \"b\", set.vehicle.mas = 1 }")),
+            "wingbeat: study.toml:7:29: choice.alternative.set.vehicle.mas: unknown key; did you mean vehicle.mass?\n");
+  EXPECT_EQ(complaint(choice(light, light) + begin), "");
+}
+
 }  // namespace

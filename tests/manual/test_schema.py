@@ -58,6 +58,11 @@ key = "supply.voltage"
 lower = "2 V"
 upper = "8 V"
 """
+MODEL_CHOICE = """[[choice]]
+name = "formulation"
+alternative = [{ name = "rod-force" }, { name = "virtual-work", set.transmission.formulation = "virtual-work" }]
+"""
+
 OPTIMUM = """[study]
 vehicle = "friction2022-springs"
 {more}
@@ -321,6 +326,7 @@ class Schema(unittest.TestCase):
     def test_tolerance(self):
         for method in ("sobol", "monte-carlo"):
             self.check("tolerance", self.file("study.toml", TOLERANCE.format(method=method)))
+        self.check("tolerance", self.file("study.toml", TOLERANCE.format(method="sobol") + MODEL_CHOICE))
         self.everything_is_written("tolerance")
 
     def test_optimise(self):
