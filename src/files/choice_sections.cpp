@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "wingbeat/files/units.hpp"
-#include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat::detail {
 namespace {
@@ -18,12 +17,6 @@ bool within(std::string_view path, std::string_view above) {
   return path.starts_with(above) && (path.size() == above.size() || path[above.size()] == '.');
 }
 bool overlap(std::string_view one, std::string_view other) { return within(one, other) || within(other, one); }
-
-/// The number that a design has for a key; absent where the key has no number.
-std::optional<double> number_of(const Design<double>& design, std::string_view key) {
-  const Parameter<double>* parameter = find_parameter<double>(key);
-  return parameter && parameter->get ? parameter->get(design) : std::nullopt;
-}
 
 }  // namespace
 
@@ -239,16 +232,6 @@ void ChoiceSections::check_combinations(const ToleranceStudy& study) const {
           refuse(*value, shown, fmt::format("has no effect where the {} is held", held_key_->name));
         }
       }
-    }
-  }
-}
-
-void ChoiceSections::check_means(const ToleranceStudy& study, std::size_t combination,
-                                 const Design<double>& at_means) const {
-  for (const KeySettings* keys : keys_of(study, combination)) {
-    for (const auto& [key, value] : keys->values) {
-      if (number_of(study.combinations[combination], key) == number_of(at_means, key)) continue;
-      refuse(*value, keys->shown + "." + key, "an uncertain parameter takes its place");
     }
   }
 }

@@ -22,10 +22,8 @@ class ChoiceSections : public StudySections {
   /// The vehicle with each combination of alternatives, its file being sought in that folder, and with the most likely
   /// ones; without choices the vehicle alone. False if there is an error.
   bool read_combinations(ToleranceStudy& study, const std::filesystem::path& folder);
-  /// Every combination can hold what the study holds, and its alternatives do not undo each other.
+  /// Every combination can hold what the study holds.
   void check_combinations(const ToleranceStudy& study) const;
-  /// Every combination keeps its alternatives and is a possible vehicle with the parameters at their means.
-  void check_means(const ToleranceStudy& study, std::size_t combination, const Design<double>& at_means) const;
 
   /// The choice that sets the key, one within it or one that holds it; null: none does.
   const ModelChoice* choice_of(const std::vector<ModelChoice>& choices, std::string_view key) const;

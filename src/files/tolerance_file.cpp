@@ -62,10 +62,10 @@ class ToleranceReader : public detail::ChoiceSections {
                          study.choices.empty() ? "" : " and choices",
                          ScrambledSobol::max_dimensions / (study.indices ? 2 : 1)));
     }
-    if (study.choices.empty()) at_means(study.design, "", places_.at(study.parameters.front().parameter.key));
+    if (study.choices.empty()) check_means(study.design, "", places_.at(study.parameters.front().parameter.key));
     for (std::size_t v = 0; v < study.combinations.size(); ++v) {
       const std::string with = fmt::format("with {}, ", in_words(study, v));
-      check_means(study, v, at_means(study.combinations[v], with, place_of_combination(study, v)));
+      check_means(study.combinations[v], with, place_of_combination(study, v));
     }
     return study;
   }
@@ -303,9 +303,9 @@ class ToleranceReader : public detail::ChoiceSections {
     }
   }
 
-  /// The vehicle at the parameters' means, which could be built. `with`: the alternatives it has, in words; refused at
-  /// `place` where no parameter is to blame.
-  Design<double> at_means(const Design<double>& design, const std::string& with, SourceLocation place) const {
+  /// The parameters' means are a vehicle that could be built. `with`: the alternatives that it has, in words; refused
+  /// at `place` where no parameter is to blame.
+  void check_means(const Design<double>& design, const std::string& with, SourceLocation place) const {
     Design<double> centre = design;
     for (const UncertainParameter& p : study_result_->parameters) {
       if (!p.parameter.value(design)) {
@@ -326,7 +326,6 @@ class ToleranceReader : public detail::ChoiceSections {
       refuse(parameter == places_.end() ? place : parameter->second, error.key(),
              fmt::format("{}at the parameters' means: {}", with, error.reason()));
     }
-    return centre;
   }
 
   fs::path folder_;

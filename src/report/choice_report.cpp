@@ -65,7 +65,7 @@ std::string likeliest_text(const ToleranceStudy& study) {
   std::string text;
   for (const ModelChoice& choice : study.choices) {
     text +=
-        fmt::format("{}{} = {}", text.empty() ? "" : ", ", choice.name, choice.alternatives[choice.likeliest()].name);
+        fmt::format("{}{} ({})", text.empty() ? "" : ", ", choice.alternatives[choice.likeliest()].name, choice.name);
   }
   return text;
 }

@@ -66,9 +66,10 @@ void plot_tolerance(const ToleranceStudy& study, const SweepColumns& columns, co
   std::string drawn = fmt::format("{} vehicles that flap", values.size());
   if (outside > 0) drawn += fmt::format(" ({} outside the domain left out)", outside);
   figure.key_entry(0.07, y(0.32), "lw 5 lc rgb '#cfcfcf'", drawn);
-  if (linear) figure.key_entry(0.07, y(0.48), style::second_curve,
-                     study.choices.empty() ? "linear prediction from the gradient"
-                                           : "linear prediction, most likely models");
+  if (linear)
+    figure.key_entry(
+        0.07, y(0.48), style::second_curve,
+        study.choices.empty() ? "linear prediction from the gradient" : "linear prediction, most likely models");
   if (output.metric == Metric::lift_to_weight) figure.key_entry(0.6, y(0.32), style::reference_line, "hover");
   const MetricInfo& info = metric_table()[std::size_t(*output.metric)];
   figure.text(info.long_name + display.in_brackets(), 7.5, fmt::format("screen 0.52,{} center", y(2.42)));

@@ -170,21 +170,22 @@ const std::string coefficients =
     "set.aerodynamics.coefficients.drag = { offset = 1.9, amplitude = -1.5, rate = 2, phase = 0 }\n";
 
 TEST_F(Tolerance, ChoicesOfModelInReportDataSetFigureAndJson) {
-  const std::string file = study("hold = { voltage = \"5.5 V\" }\nmetrics = [\"lift_mean_n\"]\n[samples]\ncount = 128\n" +
-                                 friction + formulations + coefficients);
+  const std::string file =
+      study("hold = { voltage = \"5.5 V\" }\nmetrics = [\"lift_mean_n\"]\n[samples]\ncount = 128\n" + friction +
+            formulations + coefficients);
   const Outcome text = run({"tolerance", file, "-o", path("t.nc"), "--plot", path("t.svg")});
   ASSERT_EQ(text.status, 0) << text.err;
   for (const char* part :
        {"256 scrambled Sobol samples, 640 vehicles with those for the indices",
         "Uncertain parameters and choices of model\n",
         "  formulation                       choice, rod-force 75 %, virtual-work 25 %\n",
-        "The linear prediction is that of the most likely alternatives, formulation = rod-force,\n"
-        "  coefficients = translational-2022. It has no share for a choice.\n",
+        "The linear prediction is that of the most likely alternatives, rod-force (formulation),\n"
+        "  translational-2022 (coefficients). It has no share for a choice.\n",
         "What the choice of formulation is worth\n", "What the choice of coefficients is worth\n",
         "  mean +- deviation                 difference  parameters   translational-2022                  own\n"}) {
     EXPECT_THAT(text.out, HasSubstr(part));
   }
-  EXPECT_THAT(text.out, testing::ContainsRegex("  virtual-work +64     100.00 %    [0-9.]+ % "));
+  EXPECT_THAT(text.out, testing::ContainsRegex("  virtual-work +64    100.00 %    [0-9.]+ % "));
   EXPECT_THAT(text.out, testing::ContainsRegex("\n  formulation +0[^\n]*    -\n"));
   for (std::size_t begin = 0, end; (end = text.out.find('\n', begin)) != std::string::npos; begin = end + 1) {
     EXPECT_LE(end - begin, 102U) << text.out.substr(begin, end - begin);
@@ -237,8 +238,9 @@ TEST_F(Tolerance, ManyAlternativesGoOnInFurtherColumns) {
   const Outcome text = run({"tolerance", study("metrics = [\"lift_mean_n\"]\n[samples]\ncount = 16\nindices = false\n" +
                                                list + "]\n" + friction)});
   ASSERT_EQ(text.status, 0) << text.err;
-  EXPECT_THAT(text.out, HasSubstr("  mean +- deviation                 difference  parameters       mass-of-copy-1       "
-                                  "mass-of-copy-2\n"));
+  EXPECT_THAT(text.out,
+              HasSubstr("  mean +- deviation                 difference  parameters       mass-of-copy-1       "
+                        "mass-of-copy-2\n"));
   EXPECT_THAT(text.out, HasSubstr("  mean +- deviation                      mass-of-copy-3       mass-of-copy-4       "
                                   "mass-of-copy-5\n"));
 }
@@ -258,14 +260,17 @@ TEST_F(Tolerance, BadChoicesAreRefusedWithTheirPlace) {
   const std::string light = "{ name = \"light\", set.vehicle.mass = \"3 g\" }";
   EXPECT_EQ(complaint("[[choice]]\nalternative = []\n"),
             "wingbeat: study.toml:3:1: choice.name: missing; expected a name such as \"coefficients\"\n");
-  EXPECT_EQ(complaint("[[choice]]\nname = \"lift and drag\"\n"),
-            "wingbeat: study.toml:4:1: choice.name: expected a name of letters, digits, '-' and '_', at most 40 of them, "
-            "got \"lift and drag\"\n");
-  EXPECT_EQ(complaint(begin),
-            "wingbeat: study.toml:3:1: choice.alternative: missing; expected [[choice.alternative]] sections, each with "
-            "name, weight and set\n");
-  EXPECT_EQ(complaint(begin + "alternative = [" + light + "]\n"),
-            "wingbeat: study.toml:3:1: choice.alternative: the choice mass has one; expected two alternatives or more\n");
+  EXPECT_EQ(
+      complaint("[[choice]]\nname = \"lift and drag\"\n"),
+      "wingbeat: study.toml:4:1: choice.name: expected a name of letters, digits, '-' and '_', at most 40 of them, "
+      "got \"lift and drag\"\n");
+  EXPECT_EQ(
+      complaint(begin),
+      "wingbeat: study.toml:3:1: choice.alternative: missing; expected [[choice.alternative]] sections, each with "
+      "name, weight and set\n");
+  EXPECT_EQ(
+      complaint(begin + "alternative = [" + light + "]\n"),
+      "wingbeat: study.toml:3:1: choice.alternative: the choice mass has one; expected two alternatives or more\n");
   EXPECT_EQ(complaint(choice(light, "{ set.vehicle.mass = \"4 g\" }")),
             "wingbeat: study.toml:7:3: choice.alternative.name: missing; expected a name such as "
             "\"translational-2022\"\n");
@@ -274,15 +279,65 @@ TEST_F(Tolerance, BadChoicesAreRefusedWithTheirPlace) {
   EXPECT_EQ(complaint(choice(light, "{ name = \"b\", weight = 0 }")),
             "wingbeat: study.toml:7:17: choice.alternative.weight: must be > 0\n");
   EXPECT_EQ(complaint(choice(light, "{ name = \"b\", wait = 1 }")),
-            "wingbeat: study.toml:7:17: choice.alternative.wait: unknown key; did you mean choice.alternative.weight?\n");
-  EXPECT_EQ(complaint(choice("{ name = \"a\" }", "{ name = \"b\" }")),
-            "wingbeat: study.toml:3:1: choice.alternative: no alternative of mass sets anything; expected set = { ... } "
-            "with vehicle-file keys\n");
-  EXPECT_EQ(complaint(choice(light, "{ name = \"b\", set = 3 }")),
-            "wingbeat: study.toml:7:17: choice.alternative.set: expected a table of vehicle-file keys, got 3\n");
+            "wingbeat: study.toml:7:17: choice.alternative.wait: unknown key; known here: name, weight, set\n");
+  EXPECT_EQ(
+      complaint(choice("{ name = \"a\" }", "{ name = \"b\" }")),
+      "wingbeat: study.toml:3:1: choice.alternative: no alternative of mass sets anything; expected set = { ... } "
+      "with vehicle-file keys\n");
+  EXPECT_EQ(
+      complaint(choice(light, "{ name = \"b\", set = 3 }")),
+      "wingbeat: study.toml:7:17: choice.alternative.set: expected a table of vehicle-file keys, got the number 3\n");
   EXPECT_EQ(complaint(choice(light, "{ name = \"b\", set.vehicle.mas = 1 }")),
             "wingbeat: study.toml:7:29: choice.alternative.set.vehicle.mas: unknown key; did you mean vehicle.mass?\n");
-  EXPECT_EQ(complaint(choice(light, light) + begin), "");
+
+  const std::string heavy = "{ name = \"heavy\", set.vehicle.mass = \"4 g\" }", mass = choice(light, heavy);
+  const std::string voltage = "{ name = \"low\", set.supply.voltage = \"3 V\" }";
+  EXPECT_EQ(complaint(mass + mass), "wingbeat: study.toml:10:1: choice.name: \"mass\" is the name of another choice\n");
+  EXPECT_EQ(complaint(mass + "[[choice]]\nname = \"other\"\nalternative = [{ name = \"none\" }, " + heavy + "]\n"),
+            "wingbeat: study.toml:11:65: choice.alternative.set.vehicle.mass: the choice mass sets it already\n");
+  EXPECT_EQ(complaint(mass + "[[parameter]]\nkey = \"vehicle.mass\"\n"),
+            "wingbeat: study.toml:10:1: parameter.key: the choice mass sets vehicle.mass already\n");
+  EXPECT_EQ(complaint("hold = { voltage = \"5 V\" }\n" + choice(voltage, "{ name = \"b\" }")),
+            "wingbeat: study.toml:7:30: choice.alternative.set.supply.voltage: study.hold holds the voltage already\n");
+  EXPECT_EQ(complaint("hold = { frequency = \"22 Hz\" }\n" + choice(voltage, "{ name = \"b\" }")),
+            "wingbeat: study.toml:7:30: choice.alternative.set.supply.voltage: has no effect where the frequency is "
+            "held\n");
+  const Outcome overridden = run({"tolerance", study(mass), "--set", "vehicle.mass=3 g"});
+  EXPECT_EQ(overridden.status, 2);
+  EXPECT_EQ(overridden.err, "wingbeat: --set vehicle.mass=3 g: vehicle.mass: has no effect: the choice mass sets it\n");
+}
+
+TEST_F(Tolerance, AlternativesThatMakeAnImpossibleVehicleAreRefusedByName) {
+  const auto choice = [](const std::string& name, const std::string& set) {
+    return "[[choice]]\nname = \"" + name + "\"\nalternative = [{ name = \"none\" }, { name = \"own\", set = { " + set +
+           " } }]\n";
+  };
+  const std::string mass = choice("mass", "vehicle.mass = \"4 g\"");
+  EXPECT_EQ(complaint(choice("mass", "vehicle.mass = \"4 m\"")),
+            "wingbeat: study.toml:5:67: choice.alternative.set.vehicle.mass: with mass = own: vehicle.mass: expected a "
+            "mass such as \"3 g\", got \"4 m\"\n");
+  // Alone, whatever the other choice.
+  EXPECT_EQ(complaint(mass + choice("air", "aerodynamics.added_mass = true")),
+            "wingbeat: study.toml:8:72: choice.alternative.set.aerodynamics.added_mass: with air = own: "
+            "aerodynamics.added_mass: needs the wing's outline: give wing.planform.s22, or a planform with a shape\n");
+  // Only with the other.
+  EXPECT_EQ(
+      complaint(choice("crank", "transmission.crank_radius = \"9 mm\"") +
+                choice("rod", "transmission.rod_length = \"8 mm\"")),
+      "wingbeat: study.toml:8:72: choice.alternative.set.transmission.rod_length: with crank = own and rod = own: "
+      "transmission.rod_length: must be longer than the crank radius [m], got 0.008\n");
+  EXPECT_EQ(complaint(choice("friction", "friction.type = \"none\"") + friction),
+            "wingbeat: study.toml:7:1: friction.radius: with friction = own, the vehicle does not have it\n");
+  EXPECT_EQ(
+      complaint(choice("rod", "transmission.rod_length = \"5.1 mm\"") +
+                "[[parameter]]\nkey = \"transmission.crank_radius\"\ndistribution = \"uniform\"\n"
+                "lower = \"5 mm\"\nupper = \"5.4 mm\"\n"),
+      "wingbeat: study.toml:5:35: transmission.rod_length: with rod = own, at the parameters' means: must be longer "
+      "than the crank radius [m], got 0.0051\n");
+  EXPECT_EQ(
+      complaint(choice("supply", "supply = { type = \"sine\", amplitude = \"3 V\", frequency = \"20 Hz\" }")),
+      "wingbeat: study.toml:5:35: choice.alternative: with supply = own: supply.type: a sine supply gives no steady "
+      "flapping in crank angle; expected constant or pwm\n");
 }
 
 }  // namespace
