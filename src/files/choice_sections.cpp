@@ -20,12 +20,12 @@ bool overlap(std::string_view one, std::string_view other) { return within(one, 
 
 }  // namespace
 
-std::string ChoiceSections::name_in(const TomlNode& node, const std::string& where, bool dots) const {
-  const std::string expected = fmt::format("a name of letters, digits, '-'{}, at most {} of them",
-                                           dots ? ", '_' and '.'" : " and '_'", longest_name);
+std::string ChoiceSections::name_in(const TomlNode& node, const std::string& where, bool of_variable) const {
+  const std::string expected = fmt::format("a name of letters, digits{}, at most {} of them",
+                                           of_variable ? " and '_'" : ", '-', '_' and '.'", longest_name);
   const std::string name = text_of(node, where, expected);
   const bool fits = name.size() <= longest_name && std::all_of(name.begin(), name.end(), [&](unsigned char c) {
-                      return std::isalnum(c) || c == '-' || c == '_' || (dots && c == '.');
+                      return std::isalnum(c) || c == '_' || (!of_variable && (c == '-' || c == '.'));
                     });
   if (!fits) wrong(node, where, expected);
   return name;
@@ -47,7 +47,7 @@ void ChoiceSections::read_choice(const TomlNode& node, std::vector<ModelChoice>&
   known_keys(node, "choice", {"name", "alternative"});
   ModelChoice choice;
   const TomlNode& name = need(node, "choice", "name", "a name such as \"coefficients\"");
-  choice.name = name_in(name, "choice.name", false);
+  choice.name = name_in(name, "choice.name", true);
   for (const ModelChoice& other : choices) {
     if (other.name == choice.name) {
       refuse(name, "choice.name", fmt::format("{} is the name of another choice", in_quotes(choice.name)));
@@ -97,7 +97,7 @@ ModelAlternative ChoiceSections::read_alternative(const TomlNode& node, const Mo
   known_keys(node, where, {"name", "weight", "set"});
   ModelAlternative alternative;
   const TomlNode& name = need(node, where, "name", "a name such as \"translational-2022\"");
-  alternative.name = name_in(name, where + ".name", true);
+  alternative.name = name_in(name, where + ".name", false);
   for (const ModelAlternative& other : choice.alternatives) {
     if (other.name == alternative.name) {
       refuse(name, where + ".name", fmt::format("{} is the name of another alternative", in_quotes(other.name)));

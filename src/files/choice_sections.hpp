@@ -39,7 +39,8 @@ class ChoiceSections : public StudySections {
 
   void read_choice(const TomlNode& node, std::vector<ModelChoice>& choices);
   ModelAlternative read_alternative(const TomlNode& node, const ModelChoice& choice, AlternativeSection& section);
-  std::string name_in(const TomlNode& node, const std::string& where, bool dots) const;
+  /// `of_variable`: it becomes part of the names of variables.
+  std::string name_in(const TomlNode& node, const std::string& where, bool of_variable) const;
   std::vector<const KeySettings*> keys_of(const ToleranceStudy& study, std::size_t combination) const;
   bool try_combination(ToleranceStudy& study, std::size_t combination, const std::filesystem::path& folder);
   bool blame_alternative(const ToleranceStudy& study, std::size_t combination, const std::filesystem::path& folder);

@@ -1,6 +1,5 @@
 #include "wingbeat/files/tolerance_data.hpp"
 
-#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -9,16 +8,6 @@
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
-namespace {
-
-std::string choice_name(const ModelChoice& choice) {
-  std::string name = "choice_" + choice.name;
-  std::replace(name.begin(), name.end(), '-', '_');
-  return name;
-}
-
-}  // namespace
-
 void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result, const SweepColumns& columns,
                      const std::string& input, const std::string& version, const std::filesystem::path& file) {
   NetcdfFile data(file);
@@ -41,8 +30,8 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
   const std::vector<std::uint32_t> combinations = drawn_combinations(study);
   for (std::size_t k = 0; k < study.choices.size(); ++k) {
     const ModelChoice& choice = study.choices[k];
-    const auto variable =
-        data.define_dense(choice_name(choice), {sample}, "1", "alternative of the choice", NetcdfFile::Storage::flag);
+    const auto variable = data.define_dense("choice_" + choice.name, {sample}, "1", "alternative of the choice",
+                                            NetcdfFile::Storage::flag);
     std::vector<std::string> names;
     std::vector<std::int8_t> chosen;
     for (const ModelAlternative& a : choice.alternatives) names.push_back(a.name);
@@ -101,31 +90,31 @@ void write_tolerance(const ToleranceStudy& study, const ToleranceResult& result,
   row("linear_deviation", "standard deviation by the linear prediction, unit of the output",
       &ToleranceOutput::linear_deviation);
   if (!study.choices.empty()) {
-    row("deviation_by_parameters", "standard deviation by the parameters alone, unit of the output",
+    row("parameter_deviation", "standard deviation by the parameters alone, unit of the output",
         &ToleranceOutput::deviation_by_parameters);
   }
   for (std::size_t k = 0; k < study.choices.size(); ++k) {
     const ModelChoice& choice = study.choices[k];
-    const std::string name = choice_name(choice);
-    const auto alternative = data.define_dimension(name + "_alternative", choice.alternatives.size());
+    const auto alternative = data.define_dimension("alternatives_of_" + choice.name, choice.alternatives.size());
     std::vector<std::string> names;
     std::vector<double> shares;
     for (std::size_t a = 0; a < choice.alternatives.size(); ++a) {
       names.push_back(choice.alternatives[a].name);
       shares.push_back(choice.share(a));
     }
-    data.define_texts(name + "_alternative", alternative, names, "alternatives of the choice");
-    data.write(data.define_variable(name + "_share", {alternative}, "1", "share of the samples by the weights"),
-               shares);
-    const auto conditional = [&](const char* end, const char* meaning, double ConditionalMoments::* member) {
+    data.define_texts("alternatives_of_" + choice.name, alternative, names, "alternatives of the choice");
+    data.write(
+        data.define_variable("share_of_" + choice.name, {alternative}, "1", "share of the samples by the weights"),
+        shares);
+    const auto conditional = [&](const char* what, const char* meaning, double ConditionalMoments::* member) {
       std::vector<double> values;
       for (const ToleranceOutput& o : result.outputs) {
         for (const ConditionalMoments& m : o.choices[k].alternatives) values.push_back(m.*member);
       }
-      data.write(data.define_variable(name + end, {output, alternative}, "1", meaning), values);
+      data.write(data.define_variable(what + choice.name, {output, alternative}, "1", meaning), values);
     };
-    conditional("_mean", "mean where it is chosen, unit of the output", &ConditionalMoments::mean);
-    conditional("_deviation", "standard deviation where it is chosen, unit of the output",
+    conditional("mean_by_", "mean where it is chosen, unit of the output", &ConditionalMoments::mean);
+    conditional("deviation_by_", "standard deviation where it is chosen, unit of the output",
                 &ConditionalMoments::deviation);
   }
   data.close();

@@ -10,7 +10,7 @@ namespace wingbeat {
 
 /// "translational-2022 50 %, whitney-wood-2010 50 %"
 std::string alternatives_text(const ModelChoice& choice);
-/// "translational-2022 (coefficients), none (added-mass)": the vehicle of the linear prediction.
+/// "translational-2022 (coefficients), none (added_mass)": the vehicle of the linear prediction.
 std::string likeliest_text(const ToleranceStudy& study);
 /// A table for each choice: what its alternatives do, and every metric that varies where each of them is chosen.
 std::string text_choices(const ToleranceStudy& study, const ToleranceResult& result);

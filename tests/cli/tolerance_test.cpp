@@ -224,9 +224,9 @@ TEST_F(Tolerance, ChoicesOfModelInReportDataSetFigureAndJson) {
   }
   EXPECT_NEAR(choice["outputs"]["lift_to_weight"]["difference"].get<double>(),
               sums[1] / counts[1] - sums[0] / counts[0], 1e-12);
-  EXPECT_EQ(data.read("choice_coefficients_mean").size(), 2 * json["outputs"].size());
-  EXPECT_EQ(data.read("choice_formulation_share"), (std::vector<double>{0.75, 0.25}));
-  EXPECT_EQ(data.read("deviation_by_parameters").size(), json["outputs"].size());
+  EXPECT_EQ(data.read("mean_by_coefficients").size(), 2 * json["outputs"].size());
+  EXPECT_EQ(data.read("share_of_formulation"), (std::vector<double>{0.75, 0.25}));
+  EXPECT_EQ(data.read("parameter_deviation").size(), json["outputs"].size());
 }
 
 TEST_F(Tolerance, ManyAlternativesGoOnInFurtherColumns) {
@@ -260,10 +260,9 @@ TEST_F(Tolerance, BadChoicesAreRefusedWithTheirPlace) {
   const std::string light = "{ name = \"light\", set.vehicle.mass = \"3 g\" }";
   EXPECT_EQ(complaint("[[choice]]\nalternative = []\n"),
             "wingbeat: study.toml:3:1: choice.name: missing; expected a name such as \"coefficients\"\n");
-  EXPECT_EQ(
-      complaint("[[choice]]\nname = \"lift and drag\"\n"),
-      "wingbeat: study.toml:4:1: choice.name: expected a name of letters, digits, '-' and '_', at most 40 of them, "
-      "got \"lift and drag\"\n");
+  EXPECT_EQ(complaint("[[choice]]\nname = \"lift and drag\"\n"),
+            "wingbeat: study.toml:4:1: choice.name: expected a name of letters, digits and '_', at most 40 of them, "
+            "got \"lift and drag\"\n");
   EXPECT_EQ(
       complaint(begin),
       "wingbeat: study.toml:3:1: choice.alternative: missing; expected [[choice.alternative]] sections, each with "

@@ -262,6 +262,12 @@ class Studies(unittest.TestCase):
         found = wb.tolerance(study, vehicle=reference())
         again = wb.tolerance(study, vehicle=reference(), values={"friction.radius": "2.5 mm"})
         self.assertEqual(dict(found), dict(again))
+        virtual_work = {"name": "virtual-work", "set": {"transmission.formulation": "virtual-work"}}
+        choice = {"name": "formulation", "alternative": [{"name": "rod-force"}, virtual_work]}
+        chosen = wb.tolerance({**study, "choice": [choice]}, vehicle=reference())
+        self.assertEqual([a["samples"] for a in chosen["choices"][0]["alternatives"]], [64, 64])
+        self.assertEqual([f["name"] for f in chosen["outputs"]["lift_mean_n"]["factors"]][2], "formulation")
+        self.assertNotIn("choices", found)
         with self.assertRaisesRegex(wb.InputError, "did you mean"):
             wb.tolerance({**study, "sample": {}}, vehicle=reference())
         with self.assertRaisesRegex(TypeError, "names its vehicle"):
