@@ -80,7 +80,7 @@ std::string text_choices(const ToleranceStudy& study, const ToleranceResult& res
     for (std::size_t a = 0; a < choice.alternatives.size(); ++a) {
       const AlternativeSamples& samples = result.choices[k][a];
       fmt::format_to(out, "  {:<46}{:>12}{:>12}", choice.alternatives[a].name, samples.count,
-                     fmt::format("{:.2f} %", 100.0 * samples.flapping.share));
+                     samples.count > 0 ? fmt::format("{:.2f} %", 100.0 * samples.flapping.share) : "-");
       if (samples.hover) {
         fmt::format_to(out, "    {:.2f} % ({:.2f} .. {:.2f})", 100.0 * samples.hover->share,
                        100.0 * samples.hover->lower, 100.0 * samples.hover->upper);
