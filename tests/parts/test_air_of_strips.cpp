@@ -125,11 +125,11 @@ TEST(TipLoss, MomentsAndLoadsAgreeWithQuadratures) {
 TEST(TipLoss, DerivativesByTheLiftingSpanAreThoseOfDifferences) {
   for (const PlanformShape shape : shapes) {
     const Planform<double> outline = planform(shape);
-    const auto at = [&](double B) { return tip_loss(outline, count, B, 0.4); };
+    const auto loss = [&](double B) { return tip_loss(outline, count, B, 0.4); };
     const TipLoss<Jet<1>> exact = tip_loss(cast<Jet<1>>(outline), Jet<1>(count), Jet<1>(0.9, 0), Jet<1>(0.4));
     const double h = 1e-5;
-    EXPECT_NEAR(exact.s2.v[0] / ((at(0.9 + h).s2 - at(0.9 - h).s2) / (2.0 * h)), 1.0, 1e-7);
-    EXPECT_NEAR(exact.s3.v[0] / ((at(0.9 + h).s3 - at(0.9 - h).s3) / (2.0 * h)), 1.0, 1e-7);
+    EXPECT_NEAR(exact.s2.v[0] / ((loss(0.9 + h).s2 - loss(0.9 - h).s2) / (2.0 * h)), 1.0, 1e-7);
+    EXPECT_NEAR(exact.s3.v[0] / ((loss(0.9 + h).s3 - loss(0.9 - h).s3) / (2.0 * h)), 1.0, 1e-7);
   }
 }
 
@@ -177,15 +177,15 @@ TEST(InducedVelocity, LoadsAreContinuousWhereTheStrokeReverses) {
   const double scale = aero_loads(wings.w, 100.0).moment;
   EXPECT_NEAR(aero_loads(wings.w, 1e-9, 1.0, 1.0).moment, aero_loads(wings.w, -1e-9, -1.0, 1.0).moment, 1e-9 * scale);
   for (const double psi : {-0.8, 0.0, 0.6}) {
-    const auto at = [&](double velocity, double sign) {
+    const auto loads_at = [&](double velocity, double sign) {
       return aero_loads(wings.w, wings.p, pitch_state(psi, 0.0, velocity), sign, 1.0);
     };
-    EXPECT_NEAR(at(1e-9, 1.0).stroke_moment, at(-1e-9, -1.0).stroke_moment, 1e-9 * scale);
+    EXPECT_NEAR(loads_at(1e-9, 1.0).stroke_moment, loads_at(-1e-9, -1.0).stroke_moment, 1e-9 * scale);
     PitchState<double> apart = pitch_state(psi, 0.0, -1e-9);
     apart.clap = 1.5;
-    EXPECT_NEAR(aero_loads(wings.w, wings.p, apart, -1.0, 1.0).normal_force, at(1e-9, 1.0).normal_force,
+    EXPECT_NEAR(aero_loads(wings.w, wings.p, apart, -1.0, 1.0).normal_force, loads_at(1e-9, 1.0).normal_force,
                 1e-9 * scale / 0.05);
-    EXPECT_NEAR(at(1e-9, 1.0).normal_force, at(-1e-9, -1.0).normal_force, 1e-9 * scale / 0.05);
+    EXPECT_NEAR(loads_at(1e-9, 1.0).normal_force, loads_at(-1e-9, -1.0).normal_force, 1e-9 * scale / 0.05);
   }
 }
 
@@ -227,7 +227,7 @@ TEST(InducedVelocity, LoadsOnHingesAgreeWithAQuadrature) {
             const double speed = 110.0, alpha = 0.5 * pi + psi, end = part_of(B);
             const PitchState<double> state = pitch_state(psi, 40.0, speed);
             const PitchAeroLoads<double> loads = aero_loads(wings.w, wings.p, state, 1.0, 1.0);
-            const auto at = [&](double r, bool tip) {
+            const auto strip_at = [&](double r, bool tip) {
               struct Strip {
                 double pressure, normal, along, arm;
               };
@@ -241,11 +241,11 @@ TEST(InducedVelocity, LoadsOnHingesAgreeWithAQuadrature) {
               return Strip{0.5 * density * (u * u + (tip ? 0.0 : 2.25)), C_N, C_T, d - 0.2};
             };
             const auto sum = [&](const auto& f) {
-              const auto of = [&](bool tip) {
-                return [&f, &at, tip](double r, double chord) { return f(at(r, tip), r, chord); };
+              const auto where = [&](bool tip) {
+                return [&f, &strip_at, tip](double r, double chord) { return f(strip_at(r, tip), r, chord); };
               };
-              const double inner = over_span(outline, 0.0, end, of(false));
-              return count * (inner + (B < 1.0 ? over_span(outline, end, 1.0, of(true)) : 0.0));
+              const double inner = over_span(outline, 0.0, end, where(false));
+              return count * (inner + (B < 1.0 ? over_span(outline, end, 1.0, where(true)) : 0.0));
             };
             const double normal =
                 sum([](const auto& s, double, double chord) { return s.pressure * s.normal * chord; });
