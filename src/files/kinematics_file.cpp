@@ -1,0 +1,101 @@
+#include "wingbeat/files/kinematics_file.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <iterator>
+
+#include "wingbeat/core/math.hpp"
+#include "wingbeat/core/status.hpp"
+#include "wingbeat/core/text.hpp"
+
+namespace wingbeat {
+namespace {
+
+struct KinematicsColumn {
+  const char* name;
+  double (*value)(const WingInstant&);
+};
+constexpr KinematicsColumn columns[] = {
+    {"time_s", [](const WingInstant& w) { return w.time; }},
+    {"phase_rad", [](const WingInstant& w) { return two_pi * w.cycle; }},
+    {"stroke_angle_rad", [](const WingInstant& w) { return w.stroke.value; }},
+    {"flapping_velocity_rad_per_s", [](const WingInstant& w) { return w.stroke.velocity; }},
+    {"stroke_acceleration_rad_per_s2", [](const WingInstant& w) { return w.stroke.acceleration; }},
+    {"pitch_angle_rad", [](const WingInstant& w) { return w.pitch.value; }},
+    {"pitch_velocity_rad_per_s", [](const WingInstant& w) { return w.pitch.velocity; }},
+    {"twist_angle_rad", [](const WingInstant& w) { return w.twist; }},
+};
+
+/// A text on one line, for a comment.
+std::string on_one_line(std::string text) {
+  for (char& c : text) c = c == '\n' || c == '\r' ? ' ' : c;
+  return detail::printable(text);
+}
+
+std::string degrees_of(const std::vector<double>& coefficients) {
+  std::string text;
+  for (const double x : coefficients) text += fmt::format("{}{:.12f}", text.empty() ? "" : " ", degrees_per_radian * x);
+  return text.empty() ? "0.0" : text;
+}
+
+void add_series(std::string& text, const char* angle, const AngleSeries& series) {
+  auto out = std::back_inserter(text);
+  // The formats' readers take half of a0.
+  fmt::format_to(out, "a0_{}={:.12f};\n", angle, 2.0 * degrees_per_radian * series.mean);
+  fmt::format_to(out, "ai_{}={};\n", angle, degrees_of(series.cosine));
+  fmt::format_to(out, "bi_{}={};\n", angle, degrees_of(series.sine));
+}
+
+}  // namespace
+
+std::string kinematics_csv(std::span<const WingInstant> wings) {
+  const bool twisted = !wings.empty() && std::isfinite(wings.front().twist);
+  const std::span<const KinematicsColumn> written = std::span(columns).first(std::size(columns) - (twisted ? 0 : 1));
+  std::string text;
+  auto out = std::back_inserter(text);
+  for (const KinematicsColumn& c : written) fmt::format_to(out, "{}{}", &c == written.data() ? "" : ",", c.name);
+  text += '\n';
+  for (const WingInstant& w : wings) {
+    for (const KinematicsColumn& c : written) {
+      if (&c != written.data()) text += ',';
+      if (const double x = c.value(w); std::isfinite(x)) fmt::format_to(out, "{}", x == 0.0 ? 0.0 : x);
+    }
+    text += '\n';
+  }
+  return text;
+}
+
+std::string kinematics_wabbit(const KinematicsSource& source) {
+  std::string text;
+  auto out = std::back_inserter(text);
+  fmt::format_to(out,
+                 "; Wing kinematics of {}\n"
+                 "; written by wingbeat {} export-kinematics\n"
+                 ";\n"
+                 "; One wing beat at {:.12g} Hz, t from 0 to 1. An angle is half of its a0 plus the sum over k of\n"
+                 "; ai(k) cos(2 pi k t) + bi(k) sin(2 pi k t), in degrees.\n"
+                 "; phi: stroke angle. alpha: pitch angle, zero where the chord is normal to the stroke plane,\n"
+                 "; negative while phi grows. theta: deviation, none.\n"
+                 "; Largest error of the series, in degrees: phi {:.3g}, alpha {:.3g}.\n",
+                 on_one_line(source.vehicle), source.version, source.frequency,
+                 degrees_per_radian * source.stroke.error_max, degrees_per_radian * source.pitch.error_max);
+  fmt::format_to(out,
+                 "[kinematics]\n"
+                 "format=2015-10-09;\n"
+                 "convention=flusi;\n"
+                 "units=degree;\n"
+                 "type=fourier;\n"
+                 "nfft_phi={};\n"
+                 "nfft_alpha={};\n"
+                 "nfft_theta=1;\n",
+                 source.stroke.cosine.size(), source.pitch.cosine.size());
+  add_series(text, "phi", source.stroke);
+  add_series(text, "alpha", source.pitch);
+  AngleSeries none;
+  none.cosine = none.sine = {0.0};
+  add_series(text, "theta", none);
+  return text;
+}
+
+}  // namespace wingbeat
