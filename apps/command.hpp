@@ -33,6 +33,8 @@ void add_optimise(CLI::App& program, Action& action);
 void add_endurance(CLI::App& program, Action& action);
 void add_export_fmu(CLI::App& program, Action& action);
 void add_linearise(CLI::App& program, Action& action);
+void add_export_kinematics(CLI::App& program, Action& action);
+void add_compare_loads(CLI::App& program, Action& action);
 void add_reproduce(CLI::App& program, Action& action);
 void add_new(CLI::App& program, Action& action);
 void add_scale(CLI::App& program, Action& action);

@@ -47,6 +47,8 @@ std::unique_ptr<CLI::App> command_tree(Action& action) {
   add_endurance(*program, action);
   add_linearise(*program, action);
   add_export_fmu(*program, action);
+  add_export_kinematics(*program, action);
+  add_compare_loads(*program, action);
   add_reproduce(*program, action);
   add_new(*program, action);
   add_scale(*program, action);

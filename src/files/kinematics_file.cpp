@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <iterator>
+#include <vector>
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/status.hpp"
@@ -16,7 +17,7 @@ struct KinematicsColumn {
   const char* name;
   double (*value)(const WingInstant&);
 };
-constexpr KinematicsColumn columns[] = {
+constexpr KinematicsColumn kinematics_columns[] = {
     {"time_s", [](const WingInstant& w) { return w.time; }},
     {"phase_rad", [](const WingInstant& w) { return two_pi * w.cycle; }},
     {"stroke_angle_rad", [](const WingInstant& w) { return w.stroke.value; }},
@@ -25,6 +26,9 @@ constexpr KinematicsColumn columns[] = {
     {"pitch_angle_rad", [](const WingInstant& w) { return w.pitch.value; }},
     {"pitch_velocity_rad_per_s", [](const WingInstant& w) { return w.pitch.velocity; }},
     {"twist_angle_rad", [](const WingInstant& w) { return w.twist; }},
+    {"lift_n", [](const WingInstant& w) { return w.loads.lift; }},
+    {"stroke_moment_nm", [](const WingInstant& w) { return w.loads.stroke_moment; }},
+    {"pitch_moment_nm", [](const WingInstant& w) { return w.loads.pitch_moment; }},
 };
 
 /// A text on one line, for a comment.
@@ -49,9 +53,13 @@ void add_series(std::string& text, const char* angle, const AngleSeries& series)
 
 }  // namespace
 
-std::string kinematics_csv(std::span<const WingInstant> wings) {
-  const bool twisted = !wings.empty() && std::isfinite(wings.front().twist);
-  const std::span<const KinematicsColumn> written = std::span(columns).first(std::size(columns) - (twisted ? 0 : 1));
+std::string kinematics_csv(std::span<const WingInstant> wings, bool loads) {
+  std::vector<KinematicsColumn> written;
+  constexpr std::size_t first_load = std::size(kinematics_columns) - 3;
+  for (std::size_t k = 0; k < (loads ? std::size(kinematics_columns) : first_load); ++k) {
+    const KinematicsColumn& c = kinematics_columns[k];
+    if (!wings.empty() && std::isfinite(c.value(wings.front()))) written.push_back(c);
+  }
   std::string text;
   auto out = std::back_inserter(text);
   for (const KinematicsColumn& c : written) fmt::format_to(out, "{}{}", &c == written.data() ? "" : ",", c.name);

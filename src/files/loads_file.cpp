@@ -63,10 +63,9 @@ constexpr ColumnAlias load_aliases[] = {{"t", "time"},
                                         {"flapping_angle", "stroke_angle"},
                                         {"pitch", "pitch_angle"},
                                         {"lift_force", "lift"},
-                                        {"lift_of_a_wing", "lift_per_wing"},
-                                        {"aero_moment", "stroke_moment"}};
+                                        {"lift_of_a_wing", "lift_per_wing"}};
 
-constexpr const char* example_header = "phase_deg,lift_mN or time_s,lift_per_wing_mN,stroke_moment_mN_m";
+constexpr const char* loads_header_example = "phase_deg,lift_mN or time_s,lift_per_wing_mN,stroke_moment_mN_m";
 
 class LoadsReader {
  public:
@@ -79,7 +78,7 @@ class LoadsReader {
     const std::string utf8 = detail::decoded(text, file_, encoding);
     const BenchTable table = detail::read_bench_table(utf8, file_);
     if (table.header.cells.empty()) {
-      throw InputError(file_, 0, 0, "", fmt::format("is empty; expected a header such as {}", example_header));
+      throw InputError(file_, 0, 0, "", fmt::format("is empty; expected a header such as {}", loads_header_example));
     }
     decimal_comma_ = table.decimal_comma;
     read_header(table.header);
@@ -111,10 +110,7 @@ class LoadsReader {
 
   void read_header(const TableLine& header) {
     for (const TableCell& cell : header.cells) {
-      // As results of the program write it, where the unit would be read as nanometres.
-      const bool waveform = cell.text == "aero_moment_nm";
-      const RecognisedHeader found =
-          detail::recognise_header(waveform ? "stroke_moment_nm" : cell.text, known_, load_aliases);
+      const RecognisedHeader found = detail::recognise_header(cell.text, known_, load_aliases);
       if (found.column && !found.complaint.empty()) {
         refuse(header.number, cell.column, found.column->name, found.complaint);
       }

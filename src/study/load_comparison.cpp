@@ -57,7 +57,7 @@ PhaseWeights weights_in_phase(const std::vector<double>& phases) {
   return result;
 }
 
-std::string shown(double x) {
+std::string decimals_of(double x) {
   std::string text = std::to_string(x);
   return text.substr(0, text.find('.') + 4);
 }
@@ -65,9 +65,9 @@ std::string shown(double x) {
 void require_whole_cycle(const PhaseWeights& weights, const char* what) {
   if (weights.largest_gap <= load_gap_max) return;
   const double end = weights.gap_after + weights.largest_gap;
-  throw ParameterError(what, "the rows leave " + shown(weights.largest_gap) + " of a cycle out, from " +
-                                 shown(weights.gap_after) + " to " + shown(end) +
-                                 "; expected a whole cycle without a gap above " + shown(load_gap_max));
+  throw ParameterError(what, "the rows leave " + decimals_of(weights.largest_gap) + " of a cycle out, from " +
+                                 decimals_of(weights.gap_after) + " to " + decimals_of(end) +
+                                 "; expected a whole cycle without a gap above " + decimals_of(load_gap_max));
 }
 
 /// The angle of the rows as a series, by least squares.
@@ -109,7 +109,7 @@ AngleSeries series_of_rows(const std::vector<double>& phases, const std::vector<
   return series;
 }
 
-double load_of(const AirLoads& loads, LoadQuantity quantity) {
+double air_load_of(const AirLoads& loads, LoadQuantity quantity) {
   switch (quantity) {
     case LoadQuantity::lift: return loads.lift;
     case LoadQuantity::stroke_moment: return loads.stroke_moment;
@@ -119,8 +119,8 @@ double load_of(const AirLoads& loads, LoadQuantity quantity) {
 
 using LoadsAt = std::function<AirLoads(double phase)>;
 
-LoadComparison compared(const SimulatedLoads& simulated, const Vehicle<double>& v, double frequency,
-                        LoadComparison result, const LoadsAt& loads_at) {
+LoadComparison compared_loads(const SimulatedLoads& simulated, const Vehicle<double>& v, double frequency,
+                              LoadComparison result, const LoadsAt& loads_at) {
   result.frequency = frequency;
   result.rows = int(simulated.places.size());
   std::vector<double> phases;
@@ -138,7 +138,7 @@ LoadComparison compared(const SimulatedLoads& simulated, const Vehicle<double>& 
     const auto& series = simulated.loads[q];
     if (!series) continue;
     const auto quantity = LoadQuantity(q);
-    if (!std::isfinite(load_of(model.front(), quantity))) {
+    if (!std::isfinite(air_load_of(model.front(), quantity))) {
       result.left_out.push_back(std::string(name_of(quantity)) +
                                 (pitches(v)
                                      ? ": the model gives the lift alone of wings that twist"
@@ -150,7 +150,7 @@ LoadComparison compared(const SimulatedLoads& simulated, const Vehicle<double>& 
     std::vector<double> kept;
     for (std::size_t n = 0; n < phases.size(); ++n) {
       if (!std::isfinite(series->values[n])) continue;
-      load.points.push_back({phases[n], wings * series->values[n], load_of(model[n], quantity)});
+      load.points.push_back({phases[n], wings * series->values[n], air_load_of(model[n], quantity)});
       kept.push_back(phases[n]);
     }
     require_whole_cycle(weights_in_phase(kept), name_of(quantity));
@@ -260,7 +260,7 @@ LoadComparison compare_loads_of_motion(const SimulatedLoads& simulated, const Ve
   const PeriodicAngle stroke = periodic_angle(*result.stroke);
   const PeriodicAngle pitch = result.pitch ? periodic_angle(*result.pitch) : PeriodicAngle{};
   const bool pitch_stated = result.pitch.has_value();
-  return compared(simulated, v, frequency, std::move(result), [&](double phase) {
+  return compared_loads(simulated, v, frequency, std::move(result), [&](double phase) {
     const double time = phase / frequency;
     const AngleMotion beta = motion_of(stroke, frequency, time), psi = motion_of(pitch, frequency, time);
     return air_loads(v, beta, pitch_stated ? &psi : nullptr);
@@ -268,8 +268,8 @@ LoadComparison compare_loads_of_motion(const SimulatedLoads& simulated, const Ve
 }
 
 LoadComparison compare_loads_of_cycle(const SimulatedLoads& simulated, const CycleRecord& cycle) {
-  return compared(simulated, cycle.vehicle(), 1.0 / cycle.period(), {},
-                  [&](double phase) { return wing_instant(cycle, phase).loads; });
+  return compared_loads(simulated, cycle.vehicle(), 1.0 / cycle.period(), {},
+                        [&](double phase) { return wing_instant(cycle, phase).loads; });
 }
 
 }  // namespace wingbeat

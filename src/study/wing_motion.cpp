@@ -147,7 +147,7 @@ void add_harmonic(AngleSeries& series, std::span<const double> values) {
   series.sine.push_back(2.0 * b / count);
 }
 
-AngleSeries mean_of(std::span<const double> values) {
+AngleSeries mean_series(std::span<const double> values) {
   AngleSeries series;
   for (const double x : values) series.mean += x / double(values.size());
   return series;
@@ -156,14 +156,14 @@ AngleSeries mean_of(std::span<const double> values) {
 }  // namespace
 
 AngleSeries angle_series(std::span<const double> values, int harmonics) {
-  AngleSeries series = mean_of(values);
+  AngleSeries series = mean_series(values);
   for (int k = 0; k < harmonics; ++k) add_harmonic(series, values);
   note_errors(series, values);
   return series;
 }
 
 AngleSeries angle_series_within(std::span<const double> values, double error, int harmonics_max) {
-  AngleSeries series = mean_of(values);
+  AngleSeries series = mean_series(values);
   do {
     add_harmonic(series, values);
     note_errors(series, values);

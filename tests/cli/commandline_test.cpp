@@ -47,9 +47,10 @@ class CommandLine : public Program {
   }
 };
 
-const std::vector<std::string> commands = {"run", "compare",   "sweep",    "identify-motor", "read-bench",
-                                           "fit", "tolerance", "optimise", "endurance",      "reproduce",
-                                           "new", "scale",     "keys",     "metrics",        "schema"};
+const std::vector<std::string> commands = {
+    "run",       "compare",  "sweep",     "identify-motor",    "read-bench",   "fit",
+    "tolerance", "optimise", "endurance", "reproduce",         "new",          "scale",
+    "keys",      "metrics",  "schema",    "export-kinematics", "compare-loads"};
 
 TEST_F(CommandLine, EveryHelpExampleWorksAsTyped) {
   for (const std::string& command : commands) {

@@ -28,7 +28,7 @@ std::string refusal(const std::string& text) {
 TEST(LoadsFile, ReadsUnitsNamesAndFormsInUse) {
   LoadsNotes notes;
   const SimulatedLoads loads = parse_loads(
-      "# from a simulation\nphase_deg;Lift per wing (mN);aero_moment [mN m];psi;stroke_angle_deg\n"
+      "# from a simulation\nphase_deg;Lift per wing (mN);Stroke moment [mN m];psi;stroke_angle_deg\n"
       "90;1,5;-2,0;7;10\n270;2,5;NaN;7;-10\n0;0,5;1;7;0\n",
       "loads.csv", &notes);
   EXPECT_THAT(loads.places, ElementsAre(testing::DoubleNear(0.25, 1e-15), testing::DoubleNear(0.75, 1e-15), 0.0));
@@ -61,10 +61,11 @@ TEST(LoadsFile, TimeAndPhaseTogetherGiveTheFrequency) {
   EXPECT_DOUBLE_EQ(time.loads[0]->values[0], 9.80665e-3);
 }
 
-TEST(LoadsFile, ColumnsOfAWaveformFile) {
+TEST(LoadsFile, ColumnsOfTheProgramsOwnFiles) {
   const SimulatedLoads loads =
       parse_loads("time_s,current_a,stroke_angle_rad,lift_n,aero_moment_nm,pitch_angle_rad\n0,1,0.1,2,3,0.2\n", "x");
-  EXPECT_DOUBLE_EQ(loads.loads[1]->values[0], 3.0);  // N m, not nanometres
+  EXPECT_FALSE(loads.loads[1]);  // without the inertia of the air
+  EXPECT_DOUBLE_EQ(parse_loads("cycle,stroke_moment_nm\n0,3\n", "x").loads[1]->values[0], 3.0);  // no nanometres
   EXPECT_DOUBLE_EQ(loads.pitch[0], 0.2);
 }
 
@@ -176,6 +177,8 @@ TEST(KinematicsFile, CsvHasUnitsAndReadsBack) {
             "time_s,phase_rad,stroke_angle_rad,flapping_velocity_rad_per_s,stroke_acceleration_rad_per_s2,"
             "pitch_angle_rad,pitch_velocity_rad_per_s");
   EXPECT_THAT(csv, HasSubstr("\n0.01,3.141592653589793,0.1,-1,0.3333333333333333,0,0\n"));
+  for (WingInstant& w : wings) w.loads = {2.0, 3.0};
+  EXPECT_THAT(kinematics_csv(wings, true), HasSubstr("pitch_velocity_rad_per_s,lift_n,stroke_moment_nm\n"));
   for (WingInstant& w : wings) w.twist = 0.25;
   EXPECT_THAT(kinematics_csv(wings), HasSubstr("pitch_velocity_rad_per_s,twist_angle_rad\n0,0,0,-1,"));
 }

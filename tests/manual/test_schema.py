@@ -377,6 +377,16 @@ class Schema(unittest.TestCase):
         self.assertIsNone(locked["model"])
         self.everything_is_written("linearise")
 
+    def test_loads_from_cfd(self):
+        motion = ("pitch-hinge-crank", "--frequency", "22 Hz")
+        for form, name in (("csv", "wings.csv"), ("wabbit", "wings.ini"), ("pterasoftware", "wings.py")):
+            self.check("export-kinematics", *motion, "--format", form, "-o", self.folder / name)
+        self.everything_is_written("export-kinematics")
+        loads = DATA / "loads/pitch-hinge-crank-translational.csv"
+        self.check("compare-loads", "pitch-hinge-crank", loads)
+        self.check("compare-loads", *motion, loads, "--own-motion")
+        self.everything_is_written("compare-loads")
+
     def test_reproduce(self):
         arguments = ["friction2022", "--coarse", "-o", self.folder / "reproduce"]
         if made := os.environ.get("WINGBEAT_REPRODUCED"):

@@ -265,6 +265,24 @@ TEST(WingMotion, StatedPitchThatIsTheLawsGivesTheLawsLoads) {
   }
 }
 
+TEST(WingMotion, WingsThatTwistHaveTheirTwistAndLiftAlone) {
+  const SteadyFlapping found = settled("pitch-hinge-crank.toml", {"wing.torsion.stiffness=2e-3 N m/rad"});
+  for (const double share : {0.2, 0.6}) {
+    const WingInstant w = wing_instant(found.record, share);
+    const WaveformRow row = found.record.at(found.record.phase_at(w.time));
+    // Where the cycle is reported, at 70 % of the span.
+    EXPECT_NEAR(w.pitch.value + 0.7 * w.twist, row.pitch_angle, 1e-12);
+    EXPECT_GT(std::abs(w.twist), 1e-3);
+    EXPECT_NEAR(w.loads.lift, row.lift, 1e-12);
+    EXPECT_TRUE(std::isnan(w.loads.stroke_moment));
+  }
+  const LoadComparison c =
+      compare_loads_of_cycle(loads_of_cycle(settled("pitch-hinge-crank.toml").record, 60), found.record);
+  ASSERT_EQ(c.loads.size(), 1u);
+  EXPECT_EQ(c.left_out.size(), 2u);
+  EXPECT_THROW(air_loads(found.record.vehicle(), {}, nullptr), ParameterError);
+}
+
 TEST(WingMotion, SeriesStateTheirErrors) {
   std::vector<double> values;
   for (int n = 0; n < 256; ++n) {

@@ -20,8 +20,9 @@ inline constexpr std::pair<const char*, KinematicsFormat> names_of<KinematicsFor
     {"pterasoftware", KinematicsFormat::pterasoftware}};
 
 /// Time, phase, angles with velocities and accelerations and, of wings that twist, the twist: a header line and one
-/// line for each instant, every number with the digits that read back to the same double.
-std::string kinematics_csv(std::span<const WingInstant> wings);
+/// line for each instant, every number with the digits that read back to the same double. With `loads` also those of
+/// the model, in columns that read_loads() takes.
+std::string kinematics_csv(std::span<const WingInstant> wings, bool loads = false);
 
 /// What a file with the motion as Fourier series states beside it.
 struct KinematicsSource {
