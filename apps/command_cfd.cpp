@@ -27,6 +27,14 @@
 namespace wingbeat::app {
 namespace {
 
+/// A vehicle whose sides move alike.
+Design<double> read_alike(const OperatingPointArguments& arguments, RunOptions& options) {
+  const VehicleFile vehicle = read_operating_point(arguments, options);
+  if (!vehicle.sides) return vehicle.design;
+  throw InputError(arguments.vehicle, 0, 0, "left",
+                   "this takes no vehicle whose sides differ; wingbeat run and wingbeat linearise do");
+}
+
 constexpr int csv_rows = 361, series_steps = 1024, harmonics_max = 40;
 constexpr double series_error = 0.01 / degrees_per_radian;  ///< [rad]
 
@@ -89,7 +97,7 @@ int run(const ExportKinematicsArguments& arguments) {
     throw InputError("--loads", 0, 0, "", "only a csv file has loads; use --format csv");
   }
   RunOptions options;
-  const Design<double> design = read_operating_point(arguments.operating_point, options);
+  const Design<double> design = read_alike(arguments.operating_point, options);
   if (format == KinematicsFormat::pterasoftware) wing_sections(design.wing.planform, 2);
   OutputFile output("-o", arguments.output, {extension_of(format), arguments.force});
   const Operated operated = operate(arguments.operating_point, design, options);
@@ -146,7 +154,7 @@ int run(const CompareLoadsArguments& arguments) {
   }
   const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
   RunOptions options;
-  const Design<double> design = read_operating_point(arguments.operating_point, options);
+  const Design<double> design = read_alike(arguments.operating_point, options);
   LoadReport report;
   LoadsNotes notes;
   SimulatedLoads loads = read_loads(arguments.loads, &notes);

@@ -206,6 +206,7 @@ std::string quantity_example(std::string_view unit) {
       {"degC", "a temperature such as \"25 degC\""},
       {"K/W", "a thermal resistance such as \"20 K/W\""},
       {"1/K", "a temperature coefficient such as \"0.0039 1/K\""},
+      {"m2", "an area such as \"0.02 m2\""},
       {"m2/s", "a kinematic viscosity such as \"1.5e-5 m2/s\""},
       {"N/V", "a force per volt such as \"0.4 mN/V\""},
       {"1/V", "a growth per volt such as \"1e-3 1/V\""},

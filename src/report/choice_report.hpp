@@ -8,7 +8,7 @@
 
 namespace wingbeat {
 
-/// "translational-2022 50 %, whitney-wood-2010 50 %"
+/// "translational-2022 50 %, robobee 50 %"
 std::string alternatives_text(const ModelChoice& choice);
 /// "translational-2022 (coefficients), none (added_mass)": the vehicle of the linear prediction.
 std::string likeliest_text(const ToleranceStudy& study);

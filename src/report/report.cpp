@@ -295,7 +295,9 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
                : result.domain.any() ? "outside the model's domain: not claimed"
                                      : "can hover");
   }
-  table.metric("induced velocity", Metric::induced_velocity, "m/s", "of the wake that the mean lift leads to");
+  if (std::isfinite(m[Metric::induced_velocity])) {
+    table.metric("induced velocity", Metric::induced_velocity, "m/s", "of the wake that the mean lift leads to");
+  }
 
   table.group("Mechanism and wings");
   table.metric("peak rod force, magnitude", Metric::rod_force_peak, "N",

@@ -86,8 +86,12 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
                    study.parameters[c.second].parameter.key);
   }
   for (const ModelChoice& choice : study.choices) {
-    const std::string line = fmt::format("  {:<34}choice, {}", choice.name, alternatives_text(choice));
-    fmt::format_to(out, "{}\n", line.size() <= 100 ? line : wrapped(line, 100, 44));
+    constexpr int column = 36;
+    std::string alternatives = wrapped("choice, " + alternatives_text(choice), 100 - column, 8);
+    for (std::size_t at_end = 0; (at_end = alternatives.find('\n', at_end)) != std::string::npos; ++at_end) {
+      alternatives.insert(at_end + 1, column, ' ');
+    }
+    fmt::format_to(out, "  {:<34}{}\n", choice.name, alternatives);
   }
 
   fmt::format_to(out, "\nProbability                             95 % interval\n");

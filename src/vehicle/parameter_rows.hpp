@@ -343,21 +343,6 @@ constexpr auto wing_rows() {
           row(induced_velocity_key::swept_area, "that of the stroke",
               "A_0, area of the actuator disc; else of each wing the sector of twice the stroke amplitude"),
           [](auto& d) -> auto& { return d.aerodynamics.swept_area; }),
-      number<S>(row(clap_and_fling_key::amplitude, "none",
-                    "A: where wings meet at the reversal with the largest stroke angle, all aerodynamic forces are "
-                    "multiplied by 1 + A exp(-s / (lambda c)) on their way apart, s being the way of the 70 % station "
-                    "since then and c the mean chord"),
-                [](auto& d) -> auto& { return d.aerodynamics.clap.amplitude; }),
-      number<S, ClapGiven>(row(clap_and_fling_key::decay, "1", "lambda, way over the mean chord on which it decays"),
-                           [](auto& d) -> auto& { return d.aerodynamics.clap.decay; }),
-      number<S, ClapGiven>(
-          row(clap_and_fling_key::gap, "1",
-              "g, distance over the mean chord of the 70 % stations of the two wings at the reversal, up "
-              "to which they act on each other"),
-          [](auto& d) -> auto& { return d.aerodynamics.clap.gap; }),
-      number<S, ClapGiven>(row(clap_and_fling_key::meeting_angle, "that of two wings on one body, about 90 deg",
-                               "stroke angle at which the two wings touch"),
-                           [](auto& d) -> auto& { return d.aerodynamics.clap.meeting_angle; }),
       text<S, Pitching>(
           {"aerodynamics.centre_of_pressure",
            "",
@@ -420,6 +405,21 @@ constexpr auto wing_rows() {
                 "none",
                 "instead of lift and drag: rows [angle of attack, C_L, C_D], natural cubic splines, see below",
                 {"lift", "drag"}}),
+      number<S>(row(clap_and_fling_key::amplitude, "none",
+                    "A: where wings meet at the reversal with the largest stroke angle, all aerodynamic forces are "
+                    "multiplied by 1 + A exp(-s / (lambda c)) on their way apart, s being the way of the 70 % station "
+                    "since then and c the mean chord"),
+                [](auto& d) -> auto& { return d.aerodynamics.clap.amplitude; }),
+      number<S, ClapGiven>(row(clap_and_fling_key::decay, "1", "lambda, way over the mean chord on which it decays"),
+                           [](auto& d) -> auto& { return d.aerodynamics.clap.decay; }),
+      number<S, ClapGiven>(
+          row(clap_and_fling_key::gap, "1",
+              "g, distance over the mean chord of the 70 % stations of the two wings at the reversal, up "
+              "to which they act on each other"),
+          [](auto& d) -> auto& { return d.aerodynamics.clap.gap; }),
+      number<S, ClapGiven>(row(clap_and_fling_key::meeting_angle, "that of two wings on one body, about 90 deg",
+                               "stroke angle at which the two wings touch"),
+                           [](auto& d) -> auto& { return d.aerodynamics.clap.meeting_angle; }),
 
       number<S>({"bench.torque_constant", "N m/A", range::positive, "none",
                  "K_ref of a test bench, eq (17); enables power_motor_reference_w"},

@@ -60,11 +60,10 @@ void visit_outer(const Planform<S>& p, const S& from, const Visit& visit) {
     const auto& rows = p.chord_table;
     const S start = from * S(rows.back().first);
     for (std::size_t n = 1; n < rows.size(); ++n) {
-      const auto [x0, c0] = rows[n - 1];
-      const auto [x1, c1] = rows[n];
+      const double x0 = rows[n - 1].first, c0 = rows[n - 1].second, x1 = rows[n].first;
       if (!(value_of(start) < x1)) continue;
       const S lower = value_of(start) > x0 ? start : S(x0);
-      const double slope = (c1 - c0) / (x1 - x0);
+      const double slope = (rows[n].second - c0) / (x1 - x0);
       visit_gauss_16([&](double node, double weight) {
         const S x = lower + S(node) * (S(x1) - lower);
         visit(S(p.scale * weight * (S(x1) - lower)), S(p.scale * (S(c0) + S(slope) * (x - S(x0)))), S(p.scale * x));

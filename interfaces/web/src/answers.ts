@@ -130,6 +130,10 @@ export type Report = {
   lift_added_mass_share: number | null;
   /** Reynolds number of the mean chord at the mean speed of the wing tips [1] */
   reynolds_number: number | null;
+  /** largest stroke angle of a direct drive [rad] */
+  stroke_angle_max_rad: number | null;
+  /** induced velocity that the mean lift leads to, times the share that counts [m/s] */
+  induced_velocity_m_per_s: number | null;
   /** flight time until lift falls below the weight [s]; of a vehicle on a battery; null unless asked for: run --endurance, a study that names it */
   hover_s: number | null;
   /** flight time until the battery's end [s]; of a vehicle on a battery; null unless asked for: run --endurance, a study that names it */
