@@ -49,7 +49,7 @@ const std::array<MetricInfo, metric_count>& metric_table() {
       {"angle_of_attack_max_deg", "degree", "largest angle of attack of wings that pitch on a hinge"},
       {"lift_added_mass_share", "1", "part of the mean lift that comes from the added mass of wings on pitch hinges"},
       {"reynolds_number", "1", "Reynolds number of the mean chord at the mean speed of the wing tips"},
-      {"stroke_angle_max_rad", "rad", "largest stroke angle of a direct drive"},
+      {"stroke_angle_max_rad", "rad", "largest stroke angle of a direct drive whose wings clap"},
       {"induced_velocity_m_per_s", "m/s", "induced velocity that the mean lift leads to, times the share that counts"},
       {"hover_s", "s", "flight time until lift falls below the weight"},
       {"endurance_s", "s", "flight time until the battery's end"},
@@ -92,7 +92,8 @@ const char* missing_key(Metric metric, const Design<double>& design) {
     case Metric::induced_velocity:
       return design.aerodynamics.induced_velocity ? nullptr : induced_velocity_key::share.path;
     case Metric::stroke_angle_max:
-      return design.transmission.type == TransmissionType::direct ? nullptr : "transmission.type = \"direct\"";
+      if (design.transmission.type != TransmissionType::direct) return "transmission.type = \"direct\"";
+      return design.aerodynamics.clap.amplitude ? nullptr : clap_and_fling_key::amplitude.path;
     case Metric::power_electronics:
       return design.electronics.efficiency || design.piezo.force_per_volt ? nullptr : electronics_key::efficiency.path;
     case Metric::power_hinge:

@@ -186,7 +186,7 @@ constexpr MetricDefinition metric_definitions[] = {
      "`aerodynamics.added_mass = true` on pitch hinges; 0 with `pitch.leading_edge_suction = 1`"},
     {Metric::reynolds_number, R"($\mathit{Re} = \bar c\, 4 \Phi f (R + d) / \nu$)",
      R"($\bar c$ the mean chord, $\Phi$ the stroke amplitude; wings with a shape, in air)"},
-    {Metric::stroke_angle_max, R"($\beta_\mathrm{max}$)", "direct drives"},
+    {Metric::stroke_angle_max, R"($\beta_\mathrm{max}$)", "direct drives with `aerodynamics.clap_and_fling`"},
     {Metric::induced_velocity, R"($v_\mathrm{i}$)",
      R"($\kappa \sqrt{\overline{L} / (2 \rho A_0)}$, at which the orbit was found; `aerodynamics.induced_velocity` )"
      R"($\kappa$ given)"},

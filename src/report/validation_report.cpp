@@ -203,13 +203,13 @@ void plot_quantities(const ValidationSet& set, const ValidationStage& stage, Plo
     PointSeries series{"predicted rows", {}};
     for (std::size_t n = 0; n < set.points.size(); ++n) {
       const ValidationPoint& p = set.points[n];
-      const double off = 100.0 * (stage.predicted[n] / p.measured - 1.0);
-      if (p.quantity == q && std::isfinite(off)) series.points.emplace_back(p.position, off);
+      const double ratio = stage.predicted[n] / p.measured;
+      if (p.quantity == q && std::isfinite(ratio)) series.points.emplace_back(p.position, ratio);
     }
     panels.push_back({set.quantities[q].name, {}});
     if (!series.points.empty()) panels.back().series.push_back(std::move(series));
   }
-  plot_panels(panels, {set.name, set.position_name, "computed over published, minus 1 (%)", 0.0}, format, file);
+  plot_panels(panels, {set.name, set.position_name, "computed over published", 1.0}, format, file);
 }
 
 }  // namespace

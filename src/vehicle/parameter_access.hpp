@@ -113,11 +113,6 @@ struct ClapGiven {
   static constexpr std::string_view text = "aerodynamics.clap_and_fling.amplitude";
   static constexpr bool holds(const auto& d) { return d.aerodynamics.clap.amplitude.has_value(); }
 };
-/// Of coefficients that are neither a named set nor a table.
-struct OwnCoefficients {
-  static constexpr std::string_view text = "aerodynamics.coefficients.lift.offset";
-  static constexpr bool holds(const auto& d) { return d.aerodynamics.coefficients_name == "custom"; }
-};
 struct PiezoDriven {
   static constexpr std::string_view text = "piezo.force_per_volt";
   static constexpr bool holds(const auto& d) { return d.piezo.force_per_volt.has_value(); }

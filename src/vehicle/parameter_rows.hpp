@@ -394,11 +394,10 @@ constexpr auto wing_rows() {
       wave_number<S>(
           {"aerodynamics.coefficients.drag.phase", "rad", range::any, "required", "D of C_D = A + B cos(C alpha + D)"},
           [](auto& c) -> auto& { return c.drag.phase; }),
-      number<S, OwnCoefficients>(
-          {"aerodynamics.coefficients.tangential", "1", range::not_negative, "0",
-           "C_T,0 of a force along the chord beside C_L and C_D: C_T = C_T,0 cos(2 alpha)^2 below "
-           "45 deg, else 0"},
-          [](auto& d) -> auto& { return d.aerodynamics.coefficients.tangential; }),
+      wave_number<S>({"aerodynamics.coefficients.tangential", "1", range::not_negative, "0",
+                      "C_T,0 of a force along the chord beside C_L and C_D: C_T = C_T,0 cos(2 alpha)^2 below 45 deg, "
+                      "else 0"},
+                     [](auto& c) -> auto& { return c.tangential; }),
       table<S>({"aerodynamics.coefficients.table",
                 "",
                 {"name of a CSV file, or three or more rows, angles growing"},

@@ -44,6 +44,8 @@ std::vector<Design<double>> designs_of_every_kind() {
         d.motor.thermal.resistance_winding = 20.0;
         d.spring.stiffness = 1e-3;
         d.wing.areal_density = 0.02;
+        d.aerodynamics.induced_velocity = 0.5;
+        d.aerodynamics.clap.amplitude = 0.3;
         if (transmission == TransmissionType::direct) d.pitch.stiffness = 3e-4;
         designs.push_back(d);
         Design<double> further = d;
@@ -191,7 +193,7 @@ TEST(Parameters, NearestKey) {
   EXPECT_EQ(unknown_key_message("motr"), "unknown key; did you mean [motor]?");
   EXPECT_EQ(unknown_key_message("voltage"), "unknown key; did you mean supply.voltage?");
   EXPECT_EQ(unknown_key_message("spring.damper"),
-            "unknown key; [spring] knows stiffness, resonance, resonance_ratio, mass");
+            "unknown key; [spring] knows stiffness, resonance, resonance_ratio, rest_angle, mass");
   EXPECT_EQ(unknown_key_message("battery"),
             "unknown key; the sections are [vehicle], [supply], [motor], [electronics], [piezo], [transmission], "
             "[friction], [spring], [wing], [pitch], [aerodynamics], [bench]");

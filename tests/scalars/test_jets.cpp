@@ -26,13 +26,22 @@ Vehicle<double> generic_vehicle(Formulation formulation) {
   v.transmission.tabulated.reference_radius = 7e-3;
   v.friction = {1.5e-3, 3e-6, 2e-8, 1e-4};
   v.spring.stiffness = 1.1e-3;
+  v.spring.rest_angle = 0.1;
   v.source_resistance = 1.7;
   v.wings.angle_of_attack_min = 0.2;
   v.wings.added_inertia = 4e-8;
+  v.wings.coefficients.tangential = 0.3;
+  v.wings.tip = {1e-7, 8e-9, 2e-9, 0.4};
+  v.wings.clap = {0.3, 0.5, 0.2, 0.9};
+  v.wings.wake = {1.3, 0.7, 9e-3, 0.02, {}};
+  for (std::size_t k = 0; k < wake_strip_count; ++k) {
+    v.wings.wake.strips.at[k] = {5e-3 + 3.5e-3 * double(k), 1.5e-4 + 4e-6 * double(k), 2e-2 - 5e-4 * double(k)};
+  }
   v.thermal = {20.0, 48.0, 303.0, 298.0, 3.9e-3, -1e-3, 358.0};
   v.drive_frequency = 22.0;
   v.load_torque = 2e-5;
-  v.pitch.hinge = {3e-4, 2e-8, 0.8, 1e-6};
+  v.pitch.hinge = {3e-4, 2e-8, -0.8, 0.7, 1e-6};
+  v.pitch.axis = 0.1;
   v.pitch.torsion = {2e-4, 1e-8, 0.063, 0.025, 0.004, 2.0, {}};
   v.voltage_offset = 0.3;
   v.electronics = {0.9, 20.0, true};

@@ -56,7 +56,7 @@ enum class Metric {
   angle_of_attack_max,         ///< largest \f$\alpha\f$ of wings on pitch hinges [deg]
   lift_added_mass_share,       ///< of the added mass in the mean lift [1]
   reynolds_number,             ///< of the mean chord at the mean speed of the tips [1]
-  stroke_angle_max,            ///< largest \f$\beta\f$ of a direct drive [rad]
+  stroke_angle_max,            ///< largest \f$\beta\f$ of a direct drive whose wings clap [rad]
   induced_velocity,            ///< \f$v_\mathrm{i}\f$ that the mean lift leads to [m/s]
   hover,                       ///< time for which a battery lets it hover [s]; absent unless a study asks for it
   endurance                    ///< time for which a battery lets it flap [s]; absent unless a study asks for it

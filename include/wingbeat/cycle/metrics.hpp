@@ -198,7 +198,8 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
     m[which] = S(absent);
   }
   m[Metric::reynolds_number] = v.wing_limits.reynolds_number_per_speed * (S(4.0) * m[Metric::stroke_amplitude] * f);
-  m[Metric::stroke_angle_max] = drive.stroke_is_fixed ? S(absent) : peak(Extreme::stroke_max);
+  // Of others its mean may be free, as without springs.
+  m[Metric::stroke_angle_max] = drive.stroke_is_fixed || !claps(v.wings.clap) ? S(absent) : peak(Extreme::stroke_max);
   m[Metric::induced_velocity] = select<S>(
       v.wings.wake.share > S(0.0),
       induced_velocity_of(v.wings.wake, v.wings.air_density, m[Metric::lift_mean], m[Metric::stroke_amplitude]),
