@@ -49,7 +49,9 @@ void on_lanes(const Vehicle<double>& v, std::span<const double> theta,
     scatter(k.wing_jacobian, [](auto& c) -> double& { return c.kinematics.wing_jacobian; });
     scatter(k.crank_jacobian, [](auto& c) -> double& { return c.kinematics.crank_jacobian; });
     const Lanes beta = stiffness > 0.0 || claps(v.wings.clap) ? stroke_angle(k) : Lanes(0.0);
-    scatter(stiffness > 0.0 ? Lanes(stiffness) * beta : Lanes(0.0), [](auto& c) -> double& { return c.spring_moment; });
+    const Lanes twisted = beta - Lanes(v.spring.rest_angle);
+    scatter(stiffness > 0.0 ? Lanes(stiffness) * twisted : Lanes(0.0),
+            [](auto& c) -> double& { return c.spring_moment; });
     if (claps(v.wings.clap)) scatter(beta, [](auto& c) -> double& { return c.stroke_angle; });
   }
 }

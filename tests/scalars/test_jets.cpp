@@ -30,7 +30,7 @@ Vehicle<double> generic_vehicle(Formulation formulation) {
   v.source_resistance = 1.7;
   v.wings.angle_of_attack_min = 0.2;
   v.wings.added_inertia = 4e-8;
-  v.wings.coefficients.tangential = 0.3;
+  v.wings.coefficients.tangential = 1e-6;  // differences meet the kink of its curvature at 45 degrees
   v.wings.tip = {1e-7, 8e-9, 2e-9, 0.4};
   v.wings.clap = {0.3, 0.5, 0.2, 0.9};
   v.wings.wake = {1.3, 0.7, 9e-3, 0.02, {}};
