@@ -138,6 +138,12 @@ class WithMetrics:
     def reynolds_number(self) -> Quantity | None:
         """Reynolds number of the mean chord at the mean speed of the wing tips [1]."""
     @property
+    def stroke_angle_max(self) -> Quantity | None:
+        """Largest stroke angle of a direct drive whose wings clap [rad]."""
+    @property
+    def induced_velocity_m_per_s(self) -> Quantity | None:
+        """Induced velocity that the mean lift leads to, times the share that counts [m/s]."""
+    @property
     def hover(self) -> Quantity | None:
         """Flight time until lift falls below the weight [s]."""
     @property

@@ -661,12 +661,12 @@ class WingSection(Section):
         """
     @property
     def pitch_inertia(self) -> Quantity | None:
-        """I_psi = integral x^2 dm of one wing about its leading edge, where it pitches or twists; given with mass_product, or both follow from areal_density.
+        """I_psi = integral x^2 dm of one wing about its pitch axis, where it pitches or twists; given with mass_product, or both follow from areal_density.
         [kg m2] Range: > 0. Default: from areal_density.
         """
     @property
     def mass_product(self) -> Quantity | None:
-        """P = integral r x dm of one wing, r from the flapping hinge, x behind the leading edge.
+        """P = integral r x dm of one wing, r from the flapping hinge, x behind the pitch axis.
         [kg m2] Range: any. Default: from areal_density.
         """
     @property
@@ -717,14 +717,20 @@ class PitchSection(Section):
         """
     @property
     def rotational_lift(self) -> bool:
-        """the force that the circulation of a pitching wing adds, C_rot = 0.75 pi.
-        Range: true or false. Default: true, with normal-force-robofly false.
+        """the force that the circulation of a pitching wing adds, C_rot = pi (0.75 - x_0).
+        Range: true or false. Default: true, with normal-force-robofly and robobee false.
         Only with pitch.stiffness.
         """
     @property
     def damping_coefficient(self) -> Quantity | None:
         """C_rd, drag coefficient of a wing that turns about its leading edge.
-        Number. Range: >= 0. Default: 0, with normal-force-robofly 5.
+        Number. Range: >= 0. Default: 0, with normal-force-robofly and robobee 5.
+        Only with pitch.stiffness.
+        """
+    @property
+    def axis(self) -> Quantity | None:
+        """x_0, position of the pitch axis behind the leading edge over the chord: C_rot = pi (0.75 - x_0).
+        Number. Range: 0 to 0.75. Default: 0.
         Only with pitch.stiffness.
         """
     @property
@@ -732,6 +738,31 @@ class PitchSection(Section):
         """s_L, share of the added mass's force along the chord that counts as lift: with 1 added mass has no mean lift.
         Number. Range: 0 to 1. Default: 0.
         Only with pitch.stiffness.
+        """
+
+class AerodynamicsClapAndFlingSection(Section):
+    @property
+    def amplitude(self) -> Quantity | None:
+        """A: where wings meet at the reversal with the largest stroke angle, all aerodynamic forces are multiplied by 1 + A exp(-s / (lambda c)) on their way apart, s being the way of the 70 % station since then and c the mean chord.
+        Number. Range: >= 0. Default: none.
+        """
+    @property
+    def decay(self) -> Quantity | None:
+        """lambda, way over the mean chord on which it decays.
+        Number. Range: > 0. Default: 1.
+        Only with aerodynamics.clap_and_fling.amplitude.
+        """
+    @property
+    def gap(self) -> Quantity | None:
+        """g, distance over the mean chord of the 70 % stations of the two wings at the reversal, up to which they act on each other.
+        Number. Range: >= 0. Default: 1.
+        Only with aerodynamics.clap_and_fling.amplitude.
+        """
+    @property
+    def meeting_angle(self) -> Quantity | None:
+        """stroke angle at which the two wings touch.
+        [rad] Range: > 0. Default: that of two wings on one body, about 90 deg.
+        Only with aerodynamics.clap_and_fling.amplitude.
         """
 
 class AerodynamicsSection(Section):
@@ -778,10 +809,35 @@ class AerodynamicsSection(Section):
         Number. Range: > 0. Default: of a named set of coefficients 26000, else none.
         """
     @property
-    def coefficients(self) -> str | None:
-        """lift and drag coefficient against angle of attack, eqs (12, 13); normal-force-robofly: C_L = 1.8 sin(2 alpha), C_D = 1.95 - 1.5 cos(2 alpha), of both the component normal to the chord.
-        Range: translational-2022, normal-force-robofly (with pitch.stiffness), or a table of the keys below. Default: translational-2022.
+    def lifting_span(self) -> Quantity:
+        """B, part of the distance from hinge to tip that lifts; beyond it the wings have the drag C_D(0) alone.
+        Number. Range: > 0, <= 1. Default: 1: no loss at the tips.
         """
+    @property
+    def induced_velocity(self) -> Quantity | None:
+        """share, 0 to 1, of the induced velocity of momentum theory that counts. Coefficients measured on flapping wings hold a wake of their own, so that 1 counts part of it twice.
+        Number. Range: 0 to 1. Default: none.
+        """
+    @property
+    def swept_area(self) -> Quantity | None:
+        """A_0, area of the actuator disc; else of each wing the sector of twice the stroke amplitude.
+        [m2] Range: > 0. Default: that of the stroke.
+        Only with aerodynamics.induced_velocity.
+        """
+    @property
+    def centre_of_pressure(self) -> str | None:
+        """where the force of translation acts along the chord: a Fourier series over the angle of attack, or a curve from 0.25 to 0.5.
+        Range: whitney-2010 or chen-2016. Default: whitney-2010.
+        Only with pitch.stiffness.
+        """
+    @property
+    def coefficients(self) -> str | None:
+        """lift and drag coefficient against angle of attack, eqs (12, 13); normal-force-robofly: C_L = 1.8 sin(2 alpha), C_D = 1.95 - 1.5 cos(2 alpha), of both the component normal to the chord; robobee: C_L = 1.8 sin(2 alpha), C_D = 1.9 - 1.5 cos(2 alpha); normal-tangential: C_N = 3.4 sin(alpha), C_T = 0.4 cos(2 alpha)^2 below 45 deg, else 0.
+        Range: translational-2022, normal-force-robofly (with pitch.stiffness), robobee, normal-tangential, or a table of the keys below. Default: translational-2022.
+        """
+    @property
+    def clap_and_fling(self) -> AerodynamicsClapAndFlingSection:
+        """The section [aerodynamics.clap_and_fling]."""
 
 class BenchSection(Section):
     @property

@@ -130,7 +130,7 @@ export type Report = {
   lift_added_mass_share: number | null;
   /** Reynolds number of the mean chord at the mean speed of the wing tips [1] */
   reynolds_number: number | null;
-  /** largest stroke angle of a direct drive [rad] */
+  /** largest stroke angle of a direct drive whose wings clap [rad] */
   stroke_angle_max_rad: number | null;
   /** induced velocity that the mean lift leads to, times the share that counts [m/s] */
   induced_velocity_m_per_s: number | null;
