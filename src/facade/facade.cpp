@@ -105,8 +105,10 @@ Design<double> design_with(std::span<const Setting> settings, const Design<doubl
 
 std::string_view name_without_unit(std::string_view key, std::string_view unit) {
   constexpr std::pair<std::string_view, std::string_view> suffixes[] = {
-      {"V", "_v"},        {"Hz", "_hz"},           {"A", "_a"},       {"W", "_w"},    {"N", "_n"}, {"rad", "_rad"},
-      {"degree", "_deg"}, {"rad/s", "_rad_per_s"}, {"degC", "_degc"}, {"N m", "_nm"}, {"K", "_k"}, {"s", "_s"}};
+      {"V", "_v"},         {"Hz", "_hz"},     {"A", "_a"},        {"W", "_w"},
+      {"N", "_n"},         {"rad", "_rad"},   {"degree", "_deg"}, {"rad/s", "_rad_per_s"},
+      {"m/s", "_m_per_s"}, {"degC", "_degc"}, {"N m", "_nm"},     {"K", "_k"},
+      {"s", "_s"}};
   for (const auto& [suffixed_unit, suffix] : suffixes) {
     if (unit == suffixed_unit && key.ends_with(suffix)) return key.substr(0, key.size() - suffix.size());
   }

@@ -108,7 +108,8 @@ TEST_F(Cfd, Refusals) {
   EXPECT_EQ(run({"export-kinematics", plain, "--format", "wabbit", "-o", path("wings.csv")}).status, 2);
   EXPECT_THAT(run({"export-kinematics", plain, "-o", path("wings.csv"), "--harmonics", "4"}).err,
               HasSubstr("a csv file has no series"));
-  const Outcome still = run({"export-kinematics", plain, "--voltage", "0.1 V", "-o", path("wings.csv")});
+  const Outcome still =
+      run({"export-kinematics", plain, "--set", "motor.friction_torque=1 N m", "-o", path("wings.csv")});
   EXPECT_EQ(still.status, 3) << still.err;
   EXPECT_FALSE(fs::exists(path("wings.csv")));
 

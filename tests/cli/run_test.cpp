@@ -69,6 +69,8 @@ const std::vector<std::string> contract_keys = {"status",
                                                 "angle_of_attack_max_deg",
                                                 "lift_added_mass_share",
                                                 "reynolds_number",
+                                                "stroke_angle_max_rad",
+                                                "induced_velocity_m_per_s",
                                                 "hover_s",
                                                 "endurance_s"};
 
@@ -94,7 +96,8 @@ TEST_F(Run, JsonIsOneObjectWithTheContractsKeysAndNothingElse) {
     const bool option = key.find("temperature") != std::string::npos || key == "added_mass_inertia_ratio" ||
                         key == "lift_added_mass_share" || key.find("pitch") == 0 || key == "power_hinge_w" ||
                         key == "power_electronics_w" || key == "angle_of_attack_max_deg" || key == "reynolds_number" ||
-                        key == "hover_s" || key == "endurance_s";
+                        key == "hover_s" || key == "endurance_s" || key == "stroke_angle_max_rad" ||
+                        key == "induced_velocity_m_per_s";
     EXPECT_EQ(json[key].is_number(), !option) << key;
   }
   EXPECT_EQ(json["voltage_v"], 3.0);

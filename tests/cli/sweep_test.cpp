@@ -127,7 +127,7 @@ TEST_F(Sweep, EachDesignIsWhatARunOfItGives) {
       const bool option = pitching || key.find("temperature") != std::string_view::npos ||
                           key == "added_mass_inertia_ratio" || key == "lift_added_mass_share" ||
                           key == "power_electronics_w" || key == "reynolds_number" || key == "hover_s" ||
-                          key == "endurance_s";
+                          key == "endurance_s" || key == "stroke_angle_max_rad" || key == "induced_velocity_m_per_s";
       if (json[metric.key].is_null() && option) continue;
       const double swept = file.read(metric.key)[n];
       if (json[metric.key].is_null()) {

@@ -188,8 +188,8 @@ TEST(DesignErrors, KeyOfAnotherChoice) {
 
 TEST(DesignErrors, Coefficients) {
   EXPECT_EQ(refusal(vehicle_text + "coefficients = \"theodorsen\"\n"),
-            "v.toml:27:1: aerodynamics.coefficients: expected \"translational-2022\", \"normal-force-robofly\" or a "
-            "table of coefficients, got \"theodorsen\"");
+            "v.toml:27:1: aerodynamics.coefficients: expected translational-2022, normal-force-robofly, robobee, "
+            "normal-tangential or a table of coefficients, got \"theodorsen\"");
   EXPECT_EQ(refusal(vehicle_text + "coefficients = { lift = { offset = 1, amplitude = 1, rate = 2, phase = 0 } }\n"),
             "v.toml:27:1: aerodynamics.coefficients.drag.offset: missing in [aerodynamics.coefficients.drag]; "
             "expected a "

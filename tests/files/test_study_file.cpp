@@ -85,7 +85,7 @@ TEST_F(StudyFile, ExamplesOfToleranceAndOptimiseAreRead) {
   EXPECT_EQ(read_tolerance_study(studies / "tolerance-hover.toml").parameters.size(), 10U);
   const ToleranceStudy models = read_tolerance_study(studies / "tolerance-model-form.toml");
   EXPECT_EQ(models.choices.size(), 3U);
-  EXPECT_EQ(models.combinations.size(), 8U);
+  EXPECT_EQ(models.combinations.size(), 12U);
   EXPECT_EQ(read_optimise_study(studies / "optimise-hover.toml").study.constraints.size(), 3U);
   const OptimiseFile motors = read_optimise_study(studies / "optimise-motor.toml");
   EXPECT_EQ(motors.motors.size(), 18U);
