@@ -332,7 +332,7 @@ constexpr auto wing_rows() {
                     "highest Reynolds number for which the coefficients hold"),
                 [](auto& d) -> auto& { return d.aerodynamics.reynolds_number_max; }),
       number<S>(
-          row(tip_loss_key::lifting_span, "1: no loss at the tips",
+          row(tip_loss_key::lifting_span, "1",
               "B, part of the distance from hinge to tip that lifts; beyond it the wings have the drag C_D(0) alone"),
           [](auto& d) -> auto& { return d.aerodynamics.lifting_span; }),
       number<S>(row(induced_velocity_key::share, "none",
