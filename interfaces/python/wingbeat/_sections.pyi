@@ -811,7 +811,7 @@ class AerodynamicsSection(Section):
     @property
     def lifting_span(self) -> Quantity:
         """B, part of the distance from hinge to tip that lifts; beyond it the wings have the drag C_D(0) alone.
-        Number. Range: > 0, <= 1. Default: 1: no loss at the tips.
+        Number. Range: > 0, <= 1. Default: 1.
         """
     @property
     def induced_velocity(self) -> Quantity | None:
