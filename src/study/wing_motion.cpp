@@ -14,8 +14,7 @@ namespace {
 AirLoads loads_under_law(const Vehicle<double>& v, const AngleMotion& stroke, const AngleMotion* pitch) {
   const double side = sign_of(stroke.velocity), speed = std::abs(stroke.velocity);
   if (!pitch) {
-    const double branch = pitch_margin(v.wings, speed) >= 0.0 ? 1.0 : -1.0;
-    const AeroLoads<double> loads = aero_loads(v.wings, stroke.velocity, side, branch);
+    const AeroLoads<double> loads = aero_loads(v.wings, stroke.velocity, side, sign_of(pitch_margin(v.wings, speed)));
     return {loads.lift, loads.moment + loads.added_inertia * stroke.acceleration};
   }
   BladeElement<double> held = v.wings;
@@ -28,11 +27,13 @@ AirLoads loads_under_law(const Vehicle<double>& v, const AngleMotion& stroke, co
 }
 
 /// Loads of wings on hinges: of the equations of motion what is left of massless wings that nothing holds.
-AirLoads loads_on_hinges(const Vehicle<double>& v, const AngleMotion& stroke, const AngleMotion& pitch) {
+/// `clap`: the factor of clap and fling.
+AirLoads loads_on_hinges(const Vehicle<double>& v, const AngleMotion& stroke, const AngleMotion& pitch,
+                         double clap = 1.0) {
   PitchingWings<double> air = v.pitch;
   air.hinge = {};
   air.pitch_inertia = air.mass_product = 0.0;
-  const PitchState<double> state = pitch_state(pitch.value, pitch.velocity, stroke.velocity);
+  const PitchState<double> state = pitch_state(pitch.value, pitch.velocity, stroke.velocity, clap);
   constexpr double held = -1.0;  // the accelerations are stated
   const WingsAtPitch<double> wings =
       wings_at_pitch(v.wings, air, 0.0, state, sign_of(stroke.velocity), sign_of(pitch.velocity), held);
@@ -60,7 +61,8 @@ WingInstant instant_of(const RecordedCycle<System>& recorded, double theta, doub
         wings.twist = c.twist_angle;
         wings.loads.lift = m.aero.lift;
       } else {
-        wings.loads = loads_on_hinges(v, wings.stroke, wings.pitch);
+        const double clap = clap_factor(v.wings.clap, wings.stroke.value, sign_of(wings.stroke.velocity));
+        wings.loads = loads_on_hinges(v, wings.stroke, wings.pitch, clap);
       }
       return wings;
     }
@@ -70,7 +72,8 @@ WingInstant instant_of(const RecordedCycle<System>& recorded, double theta, doub
   wings.pitch.value = -side * (0.5 * pi - m.aero.angle_of_attack);
   wings.pitch.velocity = at_bound ? 0.0 : -v.wings.pitch_coefficient * wings.stroke.acceleration;
   wings.pitch.acceleration = absent;
-  wings.loads = loads_under_law(v, wings.stroke, nullptr);
+  wings.loads.lift = m.aero.lift;
+  wings.loads.stroke_moment = m.aero.moment + m.aero.added_inertia * wings.stroke.acceleration;
   return wings;
 }
 
@@ -96,6 +99,11 @@ std::vector<WingInstant> wing_motion(const CycleRecord& cycle, int count) {
 }
 
 AirLoads air_loads(const Vehicle<double>& v, const AngleMotion& stroke, const AngleMotion* pitch) {
+  if (has_induced_velocity(v.wings.wake) || claps(v.wings.clap)) {
+    throw ParameterError(
+        has_induced_velocity(v.wings.wake) ? induced_velocity_key::share.path : clap_and_fling_key::amplitude.path,
+        "follows from a settled cycle, not from a stated motion; compare at the vehicle's own");
+  }
   if (!pitches(v)) return loads_under_law(v, stroke, pitch);
   if (twists(v.pitch.torsion)) {
     throw ParameterError("wing.torsion.stiffness", "loads at a stated motion are not known of wings that twist");

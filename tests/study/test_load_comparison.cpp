@@ -238,18 +238,25 @@ TEST(WingMotion, DerivativesAreThoseOfTheAngles) {
 
 TEST(WingMotion, MomentsTakeTheAerodynamicPowerAndAddedMassNone) {
   const std::vector<std::string> with_air = {"aerodynamics.added_mass=true", "wing.planform.s22=1e-9 m5"};
+  const std::string wake = "aerodynamics.induced_velocity=0.5";
+  const std::string clap = "aerodynamics.clap_and_fling={ amplitude = 0.5, gap = 2, meeting_angle = ";
   for (const auto& [name, overrides] : {std::pair<const char*, std::vector<std::string>>{"pitch-hinge-crank.toml", {}},
                                         {"friction2022.toml", {}},
-                                        {"friction2022.toml", with_air}}) {
+                                        {"friction2022.toml", with_air},
+                                        {"x-wing-crank.toml", {wake}},
+                                        {"x-wing-crank.toml", {clap + "\"22 deg\" }"}},
+                                        {"pitch-hinge-crank.toml", {wake, clap + "\"42 deg\" }"}}}) {
     const SteadyFlapping found = settled(name, overrides);
-    double power = 0.0;
+    double power = 0.0, lift = 0.0;
     constexpr int count = 4000;
     for (int n = 0; n < count; ++n) {
       const WingInstant w = wing_instant(found.record, double(n) / count);
+      lift += w.loads.lift / count;
       power += w.loads.stroke_moment * w.stroke.velocity / count;
       if (std::isfinite(w.loads.pitch_moment)) power += w.loads.pitch_moment * w.pitch.velocity / count;
     }
     EXPECT_NEAR(power / found.metrics[Metric::power_aerodynamic], 1.0, 1e-5) << name;
+    EXPECT_NEAR(lift / found.metrics[Metric::lift_mean], 1.0, 1e-5) << name;
   }
 }
 
@@ -262,6 +269,19 @@ TEST(WingMotion, StatedPitchThatIsTheLawsGivesTheLawsLoads) {
     const AirLoads stated = air_loads(v, w.stroke, &w.pitch), law = air_loads(v, w.stroke, nullptr);
     EXPECT_NEAR(stated.lift, law.lift, 1e-12 * std::abs(law.lift));
     EXPECT_NEAR(stated.stroke_moment, law.stroke_moment, 1e-10 * std::abs(law.stroke_moment));
+  }
+}
+
+TEST(WingMotion, WhatSettlesHasNoLoadsAtAStatedMotion) {
+  const SteadyFlapping found = settled("x-wing-crank.toml", {"aerodynamics.induced_velocity=0.5"});
+  try {
+    air_loads(found.record.vehicle(), {0.1, 20.0, 0.0}, nullptr);
+    FAIL() << "accepted";
+  } catch (const ParameterError& error) {
+    EXPECT_STREQ(
+        error.what(),
+        "aerodynamics.induced_velocity: follows from a settled cycle, not from a stated motion; compare at the "
+        "vehicle's own");
   }
 }
 
