@@ -82,21 +82,19 @@ void run_orbit(const Vehicle<double>& vehicle, const RunOptions& options, RunRes
   }
 }
 
-/// Simulates start-ups until the motor is as warm as its losses in the settled cycle make it. `vehicle` is then that
-/// one.
-TransientResult simulate_warm(Vehicle<double>& vehicle, TransientOptions transient) {
-  const Vehicle<double> stated = vehicle;
-  ThermalEquilibrium equilibrium(stated.thermal, transient.tolerance);
+/// Simulates start-ups until the settled cycle leads to what it was simulated at: `simulate` does so where the
+/// equilibrium is, `advance(found, metrics)` tells it what came out, metrics that are absent where it does not flap.
+template <class Equilibrium, class Simulate, class Advance>
+TransientResult simulate_until_settled(Equilibrium& equilibrium, TransientOptions transient, const Simulate& simulate,
+                                       const Advance& advance) {
   transient.tolerance = std::max(tolerance_within_equilibrium(transient.tolerance), transient_tightest);
   TransientResult found;
-  bool flaps = false;
-  Metrics<double> nothing;
-  nothing.values.fill(absent);
+  Metrics<double> metrics;
   do {
-    vehicle = with_motor_at(stated, equilibrium.at());
-    found = simulate_start_up(vehicle, transient);
-    flaps = found.status == FlappingStatus::flapping && found.metrics;
-  } while (!equilibrium.advance(flaps, flaps ? *found.metrics : nothing, found.status != FlappingStatus::undecided));
+    found = simulate(transient);
+    metrics.values.fill(absent);
+    if (found.status == FlappingStatus::flapping && found.metrics) metrics = *found.metrics;
+  } while (!advance(found, metrics));
   if (!conclude(equilibrium, found.status, found.evidence)) {
     found.metrics.reset();
     found.settled = false;
@@ -104,30 +102,39 @@ TransientResult simulate_warm(Vehicle<double>& vehicle, TransientOptions transie
   return found;
 }
 
-/// Simulates start-ups with the motor as warm as the settled cycle makes it, in the air that it leads to. `vehicle` is
-/// then that one.
-TransientResult simulate_settled(Vehicle<double>& vehicle, TransientOptions transient) {
-  const auto simulate = [](Vehicle<double>& v, const TransientOptions& options) {
-    return heats_up(v.thermal) ? simulate_warm(v, options) : simulate_start_up(v, options);
-  };
-  if (!settles_air(vehicle)) return simulate(vehicle, transient);
+bool flaps(const TransientResult& found) { return found.status == FlappingStatus::flapping && found.metrics; }
+
+/// Simulates start-ups until the motor is as warm as its losses in the settled cycle make it. `vehicle` is then that
+/// one.
+TransientResult simulate_warm(Vehicle<double>& vehicle, const TransientOptions& transient) {
+  if (!heats_up(vehicle.thermal)) return simulate_start_up(vehicle, transient);
+  const Vehicle<double> stated = vehicle;
+  ThermalEquilibrium equilibrium(stated.thermal, transient.tolerance);
+  return simulate_until_settled(
+      equilibrium, transient,
+      [&](const TransientOptions& within) {
+        vehicle = with_motor_at(stated, equilibrium.at());
+        return simulate_start_up(vehicle, within);
+      },
+      [&](const TransientResult& found, const Metrics<double>& metrics) {
+        return equilibrium.advance(flaps(found), metrics, found.status != FlappingStatus::undecided);
+      });
+}
+
+/// simulate_warm() in the air that the settled cycle leads to.
+TransientResult simulate_settled(Vehicle<double>& vehicle, const TransientOptions& transient) {
+  if (!settles_air(vehicle)) return simulate_warm(vehicle, transient);
   const Vehicle<double> stated = vehicle;
   AirEquilibrium equilibrium(stated, transient.tolerance);
-  transient.tolerance = std::max(tolerance_within_equilibrium(transient.tolerance), transient_tightest);
-  TransientResult found;
-  bool flaps = false;
-  Metrics<double> nothing;
-  nothing.values.fill(absent);
-  do {
-    vehicle = in_air(stated, equilibrium.at());
-    found = simulate(vehicle, transient);
-    flaps = found.status == FlappingStatus::flapping && found.metrics;
-  } while (!equilibrium.advance(flaps, flaps ? *found.metrics : nothing));
-  if (!conclude(equilibrium, found.status, found.evidence)) {
-    found.metrics.reset();
-    found.settled = false;
-  }
-  return found;
+  return simulate_until_settled(
+      equilibrium, transient,
+      [&](const TransientOptions& within) {
+        vehicle = in_air(stated, equilibrium.at());
+        return simulate_warm(vehicle, within);
+      },
+      [&](const TransientResult& found, const Metrics<double>& metrics) {
+        return equilibrium.advance(flaps(found), metrics);
+      });
 }
 
 void run_transient(Vehicle<double> vehicle, const RunOptions& options, RunResult& result) {
