@@ -233,15 +233,11 @@ class LogReader {
   /// NaN for a cell without a value.
   double number_in(const TableCell& cell, int line, const Column& column) const {
     if (detail::is_missing(cell.text)) return absent;
-    std::string text = cell.text;
-    if (decimal_comma_) std::replace(text.begin(), text.end(), ',', '.');
-    const char* const end = text.data() + text.size();
-    double number = 0.0;
-    const auto [last, error] = detail::read_number(text.data() + (text.starts_with('+') ? 1 : 0), end, number);
-    if (error != std::errc{} || last != end || !std::isfinite(number)) {
+    const std::optional<double> number = detail::finite_number(cell.text, decimal_comma_);
+    if (!number) {
       refuse(line, cell.column, column.name->name, fmt::format("expected a number, got {}", in_quotes(cell.text)));
     }
-    return column.factor * number;
+    return column.factor * *number;
   }
 
   void read_row(const TableLine& line) {

@@ -167,15 +167,11 @@ class LoadsReader {
         c.values.push_back(absent);
         continue;
       }
-      std::string text = cell.text;
-      if (decimal_comma_) std::replace(text.begin(), text.end(), ',', '.');
-      const char* const end = text.data() + text.size();
-      double number = 0.0;
-      const auto [last, error] = detail::read_number(text.data() + (text.starts_with('+') ? 1 : 0), end, number);
-      if (error != std::errc{} || last != end || !std::isfinite(number)) {
+      const std::optional<double> number = detail::finite_number(cell.text, decimal_comma_);
+      if (!number) {
         refuse(row.number, cell.column, c.name->name, fmt::format("expected a number, got {}", in_quotes(cell.text)));
       }
-      c.values.push_back(c.factor * number);
+      c.values.push_back(c.factor * *number);
     }
   }
 
