@@ -68,6 +68,7 @@ VehicleFile vehicle_of(Document document, std::span<const std::string> overrides
   for (Design<double>* design : {&sides.left, &sides.right}) {
     design->motors = 1.0;
     design->mass.reset();
+    if (std::optional<double>& disc = design->aerodynamics.swept_area) *disc *= 0.5;  // stated of all wings
   }
   return {whole, std::move(sides)};
 }
