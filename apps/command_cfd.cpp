@@ -200,19 +200,13 @@ int run(const CompareLoadsArguments& arguments) {
   return done;
 }
 
-void add_allow_extrapolation(CLI::App* command, bool& allow) {
-  command->add_flag("--allow-extrapolation", allow,
-                    "Search for a frequency or a lift outside the model's domain too (docs/targets.md)");
-}
-
 }  // namespace
 
 void add_export_kinematics(CLI::App& program, Action& action) {
-  CLI::App* command =
-      program.add_subcommand("export-kinematics", "Write the motion of the wings over one cycle for CFD");
+  CLI::App* command = program.add_subcommand("export-kinematics", "Write the motion of the wings for CFD");
   const auto a = std::make_shared<ExportKinematicsArguments>();
   add_operating_point(command, a->operating_point);
-  add_allow_extrapolation(command, a->operating_point.allow_extrapolation);
+  add_allow_extrapolation(command, a->operating_point);
   add_file(command, "-o,--output", a->output, ".csv .ini .py", "The file: .csv, of wabbit .ini, of pterasoftware .py")
       ->required();
   add_choice<KinematicsFormat>(command, "--format", a->format, "csv (default), wabbit or pterasoftware", "FORMAT");
@@ -234,22 +228,16 @@ void add_export_kinematics(CLI::App& program, Action& action) {
       "pterasoftware: a Python script that sets wings and motion up and writes what compare-loads reads. docs/cfd.md\n"
       "states the signs.\n\n"
       "Exit status: 0 done, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
-  command->callback([a, &action] {
-    action = [a] {
-      a->operating_point.vehicle = find_input(a->operating_point.vehicle, InputKind::vehicle).string();
-      return run(*a);
-    };
-  });
+  act_at_operating_point(command, action, a, run);
 }
 
 void add_compare_loads(CLI::App& program, Action& action) {
-  CLI::App* command =
-      program.add_subcommand("compare-loads", "State how loads from CFD differ from the model's at the same motion");
+  CLI::App* command = program.add_subcommand("compare-loads", "Compare loads from CFD with those of the model");
   const auto a = std::make_shared<CompareLoadsArguments>();
   add_operating_point(command, a->operating_point);
   takes(command->add_option("loads", a->loads, "Loads over the cycle (CSV)")->required()->type_name("LOADS"),
         {.choices = {}, .extensions = {".csv"}, .shipped = {}});
-  add_allow_extrapolation(command, a->operating_point.allow_extrapolation);
+  add_allow_extrapolation(command, a->operating_point);
   command->add_flag("--own-motion", a->own_motion,
                     "Compare at the vehicle's settled cycle although the file has the stroke angle");
   command
@@ -272,12 +260,7 @@ void add_compare_loads(CLI::App& program, Action& action) {
       "docs/cfd.md states the signs and what each number means. The loads of the example are the model's own with a\n"
       "larger S_2, which the comparison finds.\n\n"
       "Exit status: 0 done, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
-  command->callback([a, &action] {
-    action = [a] {
-      a->operating_point.vehicle = find_input(a->operating_point.vehicle, InputKind::vehicle).string();
-      return run(*a);
-    };
-  });
+  act_at_operating_point(command, action, a, run);
 }
 
 }  // namespace wingbeat::app

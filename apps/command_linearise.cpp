@@ -91,8 +91,7 @@ void add_linearise(CLI::App& program, Action& action) {
   CLI::App* command = program.add_subcommand("linearise", "Give linear models and static maps for control design");
   const auto a = std::make_shared<LineariseArguments>();
   add_operating_point(command, a->operating_point);
-  command->add_flag("--allow-extrapolation", a->operating_point.allow_extrapolation,
-                    "Search for a frequency or a lift outside the model's domain too (docs/targets.md)");
+  add_allow_extrapolation(command, a->operating_point);
   add_file(command, "-o,--output", a->output, model_extensions, "Write the models to FILE.toml, .json, .nc or .mat");
   add_file(command, "--plot", a->plot, plot_extensions, "Plot the step responses to FILE.svg, .pdf or .png");
   command->add_option("--cycles", a->cycles, "Length of the step responses (default: about five time constants)")
@@ -112,12 +111,7 @@ void add_linearise(CLI::App& program, Action& action) {
       "The cycle-to-cycle model x' = A x + B u, y = C x + D u is exact to first order (dual numbers); docs/control.md\n"
       "says what states, inputs, outputs, maps and body axes are.\n\n"
       "Exit status: 0 done, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
-  command->callback([a, &action] {
-    action = [a] {
-      a->operating_point.vehicle = find_input(a->operating_point.vehicle, InputKind::vehicle).string();
-      return run(*a);
-    };
-  });
+  act_at_operating_point(command, action, a, run);
 }
 
 }  // namespace wingbeat::app

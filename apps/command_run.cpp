@@ -156,8 +156,7 @@ void add_run(CLI::App& program, Action& action) {
   add_choice<Method>(command, "--method", a->method, "orbit (default), or transient: simulated from rest", "METHOD");
   command->add_option("--tolerance", a->tolerance, "Relative accuracy of every metric, 1e-12 to 1e-2 (default 1e-6)")
       ->type_name("NUMBER");
-  command->add_flag("--allow-extrapolation", a->operating_point.allow_extrapolation,
-                    "Search for a frequency or a lift outside the model's domain too (docs/targets.md)");
+  add_allow_extrapolation(command, a->operating_point);
   command->add_flag("--endurance", a->endurance,
                     "How long it hovers and flaps on its battery, too (docs/endurance.md): takes some fifty times as "
                     "long");
@@ -179,12 +178,7 @@ void add_run(CLI::App& program, Action& action) {
       "--frequency as that of its sine and --lift by its amplitude; a crank on a sine needs --method transient,\n"
       "which also reports the start-up.\n\n"
       "Exit status: 0 steady flapping, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
-  command->callback([a, &action] {
-    action = [a] {
-      a->operating_point.vehicle = find_input(a->operating_point.vehicle, InputKind::vehicle).string();
-      return run(*a);
-    };
-  });
+  act_at_operating_point(command, action, a, run);
 }
 
 }  // namespace wingbeat::app

@@ -76,6 +76,11 @@ void add_operating_point(CLI::App* command, OperatingPointArguments& a) {
   add_choice<Condition>(command, "--condition", a.condition, "air (default), vacuum or wingless", "CONDITION");
 }
 
+void add_allow_extrapolation(CLI::App* command, OperatingPointArguments& arguments) {
+  command->add_flag("--allow-extrapolation", arguments.allow_extrapolation,
+                    "Search for a frequency or a lift outside the model's domain too (docs/targets.md)");
+}
+
 VehicleFile read_operating_point(const OperatingPointArguments& arguments, RunOptions& options) {
   options.allow_extrapolation = arguments.allow_extrapolation;
   options.condition = choice_of<Condition>("--condition", arguments.condition);
