@@ -141,7 +141,7 @@ class WithMetrics:
     def stroke_angle_max(self) -> Quantity | None:
         """Largest stroke angle of a direct drive whose wings clap [rad]."""
     @property
-    def induced_velocity_m_per_s(self) -> Quantity | None:
+    def induced_velocity(self) -> Quantity | None:
         """Induced velocity that the mean lift leads to, times the share that counts [m/s]."""
     @property
     def hover(self) -> Quantity | None:
