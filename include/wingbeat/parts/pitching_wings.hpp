@@ -258,9 +258,8 @@ void add_tip_drag(const BladeElement<S>& w, const PitchState<S>& state, const S&
   sum.pitch_moment = sum.pitch_moment + drag * arm * w.tip.s22;
 }
 
-/// All loads times the factor of clap and fling, of a strip in the wake its share that flapping makes.
-///
-/// Of wings without induced velocity, whose chord moments section 12 has, less those of the tips that do not lift:
+/// Of wings without induced velocity, with all chord moments less those of the tips that do not lift, and times the
+/// factor of clap and fling:
 /// \f[
 /// \begin{aligned}
 /// q &= \tfrac12 \rho\, C_\mathrm{N}(\alpha)\, \dot\beta |\dot\beta|, \qquad

@@ -244,9 +244,8 @@ S wing_area(const Planform<S>& p) {
   return p.shape == PlanformShape::semi_ellipse ? S(S(0.25 * pi) * rectangle) : rectangle;
 }
 
-/// \f$\int c^2\,\mathrm{d}r\f$ [m3] of one wing, of a planform that has a shape: \f$\tfrac23 c_0^2 R\f$ of a
-/// semi-ellipse,
-/// \f$c_0^2 R\f$ of a rectangle.
+/// \f$\int c^2\,\mathrm{d}r\f$ [m3] of one wing, of a planform that has a shape: of a semi-ellipse
+/// \f$\tfrac23 c_0^2 R\f$, of a rectangle \f$c_0^2 R\f$.
 template <Scalar S>
 S chord_square(const Planform<S>& p) {
   if (p.shape == PlanformShape::tabulated) {
