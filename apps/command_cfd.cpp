@@ -20,6 +20,7 @@
 #include "wingbeat/report/describe.hpp"
 #include "wingbeat/report/loads_report.hpp"
 #include "wingbeat/report/report.hpp"
+#include "wingbeat/study/load_grid.hpp"
 #include "wingbeat/study/run.hpp"
 #include "wingbeat/time/transient.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
@@ -35,7 +36,7 @@ Design<double> read_alike(const OperatingPointArguments& arguments, RunOptions& 
                    "this takes no vehicle whose sides differ; wingbeat run and wingbeat linearise do");
 }
 
-constexpr int csv_rows = 361, series_steps = 1024, harmonics_max = 40;
+constexpr int csv_rows = 361, grid_values = 17, series_steps = 1024, harmonics_max = 40;
 constexpr double series_error = 0.01 / degrees_per_radian;  ///< [rad]
 
 /// A vehicle at its operating point.
@@ -72,7 +73,7 @@ std::string vehicle_name(const OperatingPointArguments& arguments, const Design<
 struct ExportKinematicsArguments {
   OperatingPointArguments operating_point;
   std::string output, format = "csv";
-  int rows = csv_rows, harmonics = 0;
+  int rows = 0, harmonics = 0;  ///< 0: as the format has them
   bool loads = false, json = false, force = false;
 };
 
@@ -90,7 +91,8 @@ const char* extension_of(KinematicsFormat format) {
 
 int run(const ExportKinematicsArguments& arguments) {
   const auto format = choice_of<KinematicsFormat>("--format", arguments.format);
-  if (arguments.harmonics > 0 && format == KinematicsFormat::csv) {
+  const bool table = format == KinematicsFormat::load_table;
+  if (arguments.harmonics > 0 && (table || format == KinematicsFormat::csv)) {
     throw InputError("--harmonics", 0, 0, "", "a csv file has no series; use --format wabbit or pterasoftware");
   }
   if (arguments.loads && format != KinematicsFormat::csv) {
@@ -106,7 +108,8 @@ int run(const ExportKinematicsArguments& arguments) {
   WrittenKinematics written;
   written.format = format;
   written.frequency = 1.0 / operated.cycle.period();
-  const int count = format == KinematicsFormat::csv ? arguments.rows : series_steps + 1;
+  const int asked = arguments.rows > 0 ? arguments.rows : table ? grid_values : csv_rows;
+  const int count = format == KinematicsFormat::csv ? asked : series_steps + 1;
   const std::vector<WingInstant> wings = wing_motion(operated.cycle, count);
   written.twists = std::isfinite(wings.front().twist);
   const auto [stroke_min, stroke_max] = std::minmax_element(
@@ -118,6 +121,14 @@ int run(const ExportKinematicsArguments& arguments) {
   if (format == KinematicsFormat::csv) {
     written.rows = count;
     output.write(kinematics_csv(wings, arguments.loads));
+  } else if (table) {
+    const std::vector<LoadTable::Row> rows =
+        load_grid(resolve(operated.result.design, options.condition), wings, asked);
+    written.rows = int(rows.size());
+    output.write(load_table_csv(rows, fmt::format("Loads of {} by wingbeat {}, of all wings, at an air density of {} "
+                                                  "kg/m3, without the inertia of the air",
+                                                  vehicle_name(arguments.operating_point, design), version,
+                                                  operated.result.design.aerodynamics.air_density)));
   } else {
     if (written.twists) {
       throw InputError("--format " + arguments.format, 0, 0, "",
@@ -209,8 +220,11 @@ void add_export_kinematics(CLI::App& program, Action& action) {
   add_allow_extrapolation(command, a->operating_point);
   add_file(command, "-o,--output", a->output, ".csv .ini .py", "The file: .csv, of wabbit .ini, of pterasoftware .py")
       ->required();
-  add_choice<KinematicsFormat>(command, "--format", a->format, "csv (default), wabbit or pterasoftware", "FORMAT");
-  command->add_option("--rows", a->rows, "Instants of a csv file, both ends included (default 361)")
+  add_choice<KinematicsFormat>(command, "--format", a->format, "csv (default), wabbit, pterasoftware or load-table",
+                               "FORMAT");
+  command
+      ->add_option("--rows", a->rows,
+                   "Instants of a csv file, both ends included (default 361); flapping velocities of a load-table (17)")
       ->check(CLI::Range(3, 100000))
       ->type_name("NUMBER");
   command
@@ -225,7 +239,8 @@ void add_export_kinematics(CLI::App& program, Action& action) {
       "Example:\n"
       "  wingbeat export-kinematics friction2022 --frequency \"22 Hz\" -o wings.ini --format wabbit\n\n"
       "csv: angles, velocities, stroke acceleration over time and phase. wabbit: kinematics file of WABBIT and FLUSI.\n"
-      "pterasoftware: a Python script that sets wings and motion up and writes what compare-loads reads. docs/cfd.md\n"
+      "pterasoftware: a Python script that sets wings and motion up and writes what compare-loads reads. load-table: a\n"
+      "grid that covers the motion, with the model's loads, as aerodynamics.type = \"tabulated\" reads it. docs/cfd.md\n"
       "states the signs.\n\n"
       "Exit status: 0 done, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
   act_at_operating_point(command, action, a, run);

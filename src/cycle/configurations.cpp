@@ -48,11 +48,11 @@ void on_lanes(const Vehicle<double>& v, std::span<const double> theta,
     scatter(k.stroke_second_derivative, [](auto& c) -> double& { return c.kinematics.stroke_second_derivative; });
     scatter(k.wing_jacobian, [](auto& c) -> double& { return c.kinematics.wing_jacobian; });
     scatter(k.crank_jacobian, [](auto& c) -> double& { return c.kinematics.crank_jacobian; });
-    const Lanes beta = stiffness > 0.0 || claps(v.wings.clap) ? stroke_angle(k) : Lanes(0.0);
+    const Lanes beta = stiffness > 0.0 || needs_stroke_angle(v.wings) ? stroke_angle(k) : Lanes(0.0);
     const Lanes twisted = beta - Lanes(v.spring.rest_angle);
     scatter(stiffness > 0.0 ? Lanes(stiffness) * twisted : Lanes(0.0),
             [](auto& c) -> double& { return c.spring_moment; });
-    if (claps(v.wings.clap)) scatter(beta, [](auto& c) -> double& { return c.stroke_angle; });
+    if (needs_stroke_angle(v.wings)) scatter(beta, [](auto& c) -> double& { return c.stroke_angle; });
   }
 }
 

@@ -46,6 +46,13 @@ std::string describe(const DomainEvidence& e) {
       return format(e.value < 10.0 ? "the Reynolds number is %.3g (the coefficients hold from %.6g to %.6g)"
                                    : "the Reynolds number is %.0f (the coefficients hold from %.6g to %.6g)",
                     e.value, e.lowest, e.highest);
+    case Quantity::table_stroke_angle:
+      return format("the stroke angle reaches %.4g deg (the table of loads holds to %.4g deg)", e.value, e.highest);
+    case Quantity::table_flapping_velocity:
+      return format("the flapping velocity reaches %.4g rad/s (the table of loads holds to %.4g rad/s)", e.value,
+                    e.highest);
+    case Quantity::table_pitch_angle:
+      return format("the pitch angle reaches %.4g deg (the table of loads holds to %.4g deg)", e.value, e.highest);
   }
   return "";
 }

@@ -49,6 +49,35 @@ double law_stroke_max_deg(const Vehicle<double>& v) {
   return v.transmission.type == TransmissionType::slider_crank ? tan_law_stroke_max_deg : other_stroke_max_deg;
 }
 
+/// Of one coordinate of a table of loads: how far the motion goes, and how far the table does, to either side.
+template <class S>
+struct TableReach {
+  DomainEvidence::Quantity quantity;
+  S largest;
+  double limit;
+};
+
+/// The coordinates of a vehicle's table that metrics tell: not the pitch velocity.
+template <class S>
+std::vector<TableReach<S>> table_reaches(const Vehicle<double>& v, const Metrics<S>& m) {
+  using Quantity = DomainEvidence::Quantity;
+  std::vector<TableReach<S>> reaches;
+  if (!is_given(v.wings.tabulated)) return reaches;
+  const auto add = [&](LoadCoordinate coordinate, Quantity quantity, const S& largest, double unit) {
+    const LoadTable::Axis* axis = v.wings.tabulated.table->axis(coordinate);
+    if (axis) reaches.push_back({quantity, largest, unit * std::min(-axis->knots.front(), axis->knots.back())});
+  };
+  add(LoadCoordinate::stroke_angle, Quantity::table_stroke_angle,
+      drive_of(v).stroke_is_fixed ? S(stroke_reach_deg(v)) : m[Metric::stroke_amplitude] * S(degrees_per_radian),
+      degrees_per_radian);
+  add(LoadCoordinate::flapping_velocity, Quantity::table_flapping_velocity, m[Metric::flapping_velocity_peak], 1.0);
+  const S ahead = S(90.0) - m[Metric::angle_of_attack_min];
+  const S behind = pitches(v) ? m[Metric::angle_of_attack_max] - S(90.0) : ahead;
+  add(LoadCoordinate::pitch_angle, Quantity::table_pitch_angle, value_of(behind) > value_of(ahead) ? behind : ahead,
+      degrees_per_radian);
+  return reaches;
+}
+
 /// For double and dual numbers.
 template <class S>
 std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metrics<S>& m) {
@@ -96,6 +125,11 @@ std::array<S, domain_limit_count> excess_of(const Vehicle<double>& v, const Metr
     }
   }
 
+  for (const TableReach<S>& r : table_reaches(v, m)) {
+    S& excess_reach = excess_of(DomainLimit::load_table);
+    excess_reach = larger(r.limit > 0.0 ? S(r.largest / S(r.limit) - S(1.0)) : S(1.0), excess_reach);
+  }
+
   const S& P_e = m[Metric::power_electrical];
   const S& P_m = m[Metric::power_motor];
   const S& P_aero = m[Metric::power_aerodynamic];
@@ -140,6 +174,9 @@ const std::array<DomainLimitInfo, domain_limit_count>& domain_limit_table() {
       {"reynolds_number",
        "Reynolds number of wings with a shape within that of the named force coefficients, 100 to 26000, or within "
        "aerodynamics.reynolds_number_min and reynolds_number_max"},
+      {"load_table",
+       "stroke angle, flapping velocity and pitch angle within the table of loads, to either side as far as it reaches "
+       "to both"},
   }};
   return table;
 }
@@ -238,6 +275,9 @@ std::vector<DomainEvidence> domain_evidence(const Vehicle<double>& v, const Metr
       -zero_celsius, T_max);
   add(DomainLimit::reynolds_number, Quantity::reynolds_number, m[Metric::reynolds_number],
       v.wing_limits.reynolds_number_min, v.wing_limits.reynolds_number_max);
+  for (const TableReach<double>& r : table_reaches(v, m)) {
+    if (!(r.largest <= r.limit)) add(DomainLimit::load_table, r.quantity, r.largest, -r.limit, r.limit);
+  }
   return rows;
 }
 

@@ -251,7 +251,7 @@ class Editor {
 
 /// Keys that may name a table file, with its name as it stands there.
 constexpr std::string_view naming[] = {"wing.planform.file", "supply.discharge_curve", "transmission.file",
-                                       "aerodynamics.coefficients.table"};
+                                       "aerodynamics.coefficients.table", load_table_key::file};
 
 /// The text with the names of table files as they are seen from another folder.
 std::string moved(const std::string& text, const fs::path& from, const fs::path& to) {

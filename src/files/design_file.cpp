@@ -38,6 +38,13 @@ constexpr std::string_view centre_of_pressure_key = "aerodynamics.centre_of_pres
 constexpr CsvColumn chord_columns[] = {{"distance", "m"}, {"chord", "m"}};
 constexpr CsvColumn stroke_columns[] = {{"crank_angle", "rad"}, {"stroke_angle", "rad"}};
 constexpr CsvColumn discharge_columns[] = {{"charge", "1"}, {"voltage", "V"}};
+constexpr CsvColumn load_columns[] = {{"stroke_angle", "rad", true},
+                                      {"flapping_velocity", "rad/s"},
+                                      {"pitch_angle", "rad", true},
+                                      {"pitch_velocity", "rad/s", true},
+                                      {"lift", "N"},
+                                      {"stroke_moment", "N m"},
+                                      {"pitch_moment", "N m", true}};
 constexpr CsvColumn coefficient_columns[] = {{"alpha", "rad"}, {"cl", "1"}, {"cd", "1"}};
 
 class Reader {
@@ -65,6 +72,7 @@ class Reader {
     read_choice("wing.planform.shape", d.wing.planform.shape);
     check_alternatives();
     attempt([&] { read_coefficients(d.aerodynamics); });
+    attempt([&] { read_loads(d.aerodynamics); });
     attempt([&] { read_flag("aerodynamics.added_mass", d.aerodynamics.added_mass); });
     const RotationTerms rotation = rotation_with(d.aerodynamics.coefficients_name);
     d.pitch.rotational_lift = rotation.lift;
@@ -358,6 +366,29 @@ class Reader {
     }
   }
 
+  /// The table of loads of aerodynamics.type = "tabulated".
+  void read_loads(AerodynamicsDesign<double>& a) const {
+    const std::string type = load_table_key::type, in_place = load_table_key::rows;
+    const std::string path = document_.find(in_place) ? in_place : load_table_key::file;
+    const Value* const chosen = document_.find(type);
+    const Value* const value = document_.find(path);
+    if (!chosen || text_of(*chosen, type, "quasi-steady or tabulated") == "quasi-steady") return;
+    if (chosen->text != "tabulated") wrong(*chosen, type, "quasi-steady or tabulated");
+    if (!value) return missing(path, "\"loads.csv\", the name of a CSV file");
+    for (const std::string_view other : {std::string_view("aerodynamics.coefficients"), centre_of_pressure_key}) {
+      if (!document_.find(other) && !document_.has_section(other)) continue;
+      document_.locate(other).refuse(std::string(other), "is not for tabulated loads, which come in its place");
+    }
+    if (path != in_place) text_of(*value, path, "the name of a CSV file");
+    if (path == in_place && value->kind != TomlNode::Kind::array) wrong(*value, path, "rows of seven values");
+    try {
+      a.load_table = std::make_shared<LoadTable>(read_table(*value, path, load_columns));
+    } catch (const ParameterError& error) {
+      value->origin.refuse(path, error.reason());
+    }
+    a.coefficients_name = "tabulated";
+  }
+
   void read_discharge_curve(Battery<double>& battery) const {
     const std::string_view path = "supply.discharge_curve";
     const Value* value = document_.find(path);
@@ -432,6 +463,7 @@ class Reader {
     } catch (const ParameterError& error) {
       std::string key = error.key();
       if (key == "wing.planform.file" && !document_.find(key)) key = "wing.planform.chords";
+      if (key == load_table_key::file && !document_.find(key)) key = load_table_key::rows;
       if (key == "transmission.stroke_table" && !document_.find(key)) key = "transmission.file";
       document_.locate(key).refuse(key, error.reason());
     }

@@ -80,6 +80,10 @@ std::vector<WrittenKey> written_keys(const Design<double>& design) {
         rows.push_back({table->alpha()[n], table->lift()[n], table->drag()[n]});
       }
       write_rows<3>(written, {"rad", "1", "1"}, rows);
+    } else if (key.path == load_table_key::rows) {
+      const auto& table = design.aerodynamics.load_table;
+      if (!table) continue;
+      write_rows<LoadTable::columns>(written, {"rad", "rad/s", "rad", "rad/s", "N", "N m", "N m"}, table->rows());
     } else if (key.text) {
       written.value.text = key.text(design);
       if (written.value.text.empty()) continue;

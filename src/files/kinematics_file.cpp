@@ -74,6 +74,29 @@ std::string kinematics_csv(std::span<const WingInstant> wings, bool loads) {
   return text;
 }
 
+std::string load_table_csv(std::span<const LoadTable::Row> rows, const std::string& comment) {
+  static constexpr const char* headers[LoadTable::columns] = {
+      "stroke_angle_rad", "flapping_velocity_rad_per_s", "pitch_angle_rad", "pitch_velocity_rad_per_s",
+      "lift_N",           "stroke_moment_N_m",           "pitch_moment_N_m"};
+  std::string text = "# " + on_one_line(comment) + "\n";
+  auto out = std::back_inserter(text);
+  const auto add_line = [&](const auto& cell) {
+    bool first = true;
+    for (std::size_t k = 0; k < LoadTable::columns; ++k) {
+      if (rows.empty() || std::isnan(rows.front()[k])) continue;
+      text += first ? "" : ",";
+      first = false;
+      cell(k);
+    }
+    text += '\n';
+  };
+  add_line([&](std::size_t k) { text += headers[k]; });
+  for (const LoadTable::Row& row : rows) {
+    add_line([&](std::size_t k) { fmt::format_to(out, "{}", row[k] == 0.0 ? 0.0 : row[k]); });
+  }
+  return text;
+}
+
 std::string kinematics_wabbit(const KinematicsSource& source) {
   std::string text;
   auto out = std::back_inserter(text);

@@ -24,8 +24,13 @@ using detail::Kind;
 
 constexpr std::uint64_t longest_axis = 1000000;
 /// Text keys that name or hold tables, of which no axis is made.
-constexpr std::string_view table_keys[] = {"wing.planform.file", "wing.planform.chords", "transmission.file",
-                                           "transmission.stroke_table", "aerodynamics.coefficients.table"};
+constexpr std::string_view table_keys[] = {"wing.planform.file",
+                                           "wing.planform.chords",
+                                           "transmission.file",
+                                           "transmission.stroke_table",
+                                           "aerodynamics.coefficients.table",
+                                           load_table_key::file,
+                                           load_table_key::rows};
 
 class StudyReader : public detail::StudySections {
  public:

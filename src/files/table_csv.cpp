@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 
 #include "files/csv_cells.hpp"
@@ -16,9 +17,13 @@ namespace {
 std::string example_header(std::span<const CsvColumn> columns) {
   std::string header;
   for (const CsvColumn& column : columns) {
+    if (column.optional) continue;
     header += (header.empty() ? "" : ",") + std::string(column.name);
     if (column.unit == "m") header += "_mm";
     if (column.unit == "rad") header += "_deg";
+    if (column.unit == "rad/s") header += "_rad_per_s";
+    if (column.unit == "N") header += "_mN";
+    if (column.unit == "N m") header += "_mN_m";
   }
   return header;
 }
@@ -76,7 +81,12 @@ std::vector<std::vector<double>> parse_csv(std::string_view text, const std::str
         }
         headings.push_back({index, unit});
       }
-      if (headings.size() != columns.size()) {
+      const bool complete = std::all_of(columns.begin(), columns.end(), [&](const CsvColumn& c) {
+        const auto index = std::size_t(&c - columns.data());
+        return c.optional ||
+               std::any_of(headings.begin(), headings.end(), [&](const Heading& h) { return h.index == index; });
+      });
+      if (!complete) {
         refuse(cells.front(), fmt::format("too few columns; expected a header such as {}", header));
       }
       continue;
@@ -85,7 +95,7 @@ std::vector<std::vector<double>> parse_csv(std::string_view text, const std::str
     if (cells.size() != headings.size()) {
       refuse(cells.front(), fmt::format("expected {} numbers, got {}", headings.size(), cells.size()));
     }
-    std::vector<double> row(columns.size());
+    std::vector<double> row(columns.size(), std::numeric_limits<double>::quiet_NaN());
     for (std::size_t n = 0; n < cells.size(); ++n) {
       try {
         const std::string quantity = std::string(cells[n].text) + " " + headings[n].unit;

@@ -11,6 +11,7 @@ namespace wingbeat {
 struct CsvColumn {
   std::string_view name;
   std::string_view unit;  ///< SI; "1": the column has no unit
+  bool optional = false;  ///< a table without it has rows that are not a number there
 };
 
 /// Rows of SI numbers, the columns in the order asked for. The header reads "distance_mm,chord_mm",

@@ -2,6 +2,7 @@
 // of a vehicle file, and what its saved states are made of.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <cstring>
 #include <memory>
@@ -55,9 +56,17 @@ class ArchiveWriter {
     (*this)(std::uint64_t(list.size()));
     for (const T& x : list) (*this)(x);
   }
+  template <class T, std::size_t N>
+  void operator()(const std::array<T, N>& list) {
+    for (const T& x : list) (*this)(x);
+  }
   void operator()(const std::shared_ptr<const CoefficientTable>& table) {
     (*this)(table != nullptr);
     if (table) (*this)(table->alpha()), (*this)(table->lift()), (*this)(table->drag());
+  }
+  void operator()(const std::shared_ptr<const LoadTable>& table) {
+    (*this)(table != nullptr);
+    if (table) (*this)(table->rows());
   }
   void operator()(const std::shared_ptr<const StrokeCurve>& curve) {
     (*this)(curve != nullptr);
@@ -100,12 +109,23 @@ class ArchiveReader {
     list.assign(std::size_t(count), T{});
     for (T& x : list) (*this)(x);
   }
+  template <class T, std::size_t N>
+  void operator()(std::array<T, N>& list) {
+    for (T& x : list) (*this)(x);
+  }
   void operator()(std::shared_ptr<const CoefficientTable>& table) {
     table = nullptr;
     if (!value<bool>()) return;
     std::vector<double> alpha, lift, drag;
     (*this)(alpha), (*this)(lift), (*this)(drag);
     table = std::make_shared<const CoefficientTable>(alpha, lift, drag);
+  }
+  void operator()(std::shared_ptr<const LoadTable>& table) {
+    table = nullptr;
+    if (!value<bool>()) return;
+    std::vector<LoadTable::Row> rows;
+    (*this)(rows);
+    table = std::make_shared<const LoadTable>(rows);
   }
   void operator()(std::shared_ptr<const StrokeCurve>& curve) {
     curve = nullptr;

@@ -44,7 +44,9 @@ std::string text_kinematics(const WrittenKinematics& w) {
                       degrees_per_radian * w.stroke_max);
   text += fmt::format("  {:<16}{:>10.3f} to {:>8.3f} deg{}\n", "Pitch angle", degrees_per_radian * w.pitch_min,
                       degrees_per_radian * w.pitch_max, w.twists ? ", of the root" : "");
-  if (w.format == KinematicsFormat::csv) {
+  if (w.format == KinematicsFormat::load_table) {
+    text += fmt::format("\n{} rows of loads, over a grid that goes a fifth further\n", w.rows);
+  } else if (w.format == KinematicsFormat::csv) {
     text += fmt::format("\n{} instants equally spaced in time, both ends included\n", w.rows);
   } else if (w.stroke && w.pitch) {
     text += "\nFourier series over the beat\n" + angle_series_text("stroke", *w.stroke) +

@@ -68,7 +68,7 @@ BodyDerivatives body_derivatives(const Design<double>& design, const Vehicle<dou
                                  double hinge_offset) {
   const BladeElement<double>& air = vehicle.wings;
   // Their strips differ from those here, which one angle of attack and the chord moments describe.
-  if (acts_by_strips(air) || has_induced_velocity(air.wake) || claps(air.clap))
+  if (acts_by_strips(air) || has_induced_velocity(air.wake) || claps(air.clap) || is_given(air.tabulated))
     return BodyDerivatives::Constant(absent);
   const auto wings = cast<StripJet>(vehicle);
   const std::array<double, 3> half = {0.5 * first_moment(design, vehicle), 0.5 * vehicle.wings.s2,

@@ -96,6 +96,7 @@ std::string bound_of(DomainLimit limit, const Vehicle<double>& vehicle) {
       return "winding_temperature <= " + number(vehicle.thermal.winding_temperature_max - zero_celsius) + " degC";
     case DomainLimit::reynolds_number:
       return "reynolds_number from " + number(wings.reynolds_number_min) + " to " + number(wings.reynolds_number_max);
+    case DomainLimit::load_table: return "motion within the table of loads";
   }
   return "unknown";
 }

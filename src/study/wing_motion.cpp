@@ -14,13 +14,14 @@ namespace {
 AirLoads loads_under_law(const Vehicle<double>& v, const AngleMotion& stroke, const AngleMotion* pitch) {
   const double side = sign_of(stroke.velocity), speed = std::abs(stroke.velocity);
   if (!pitch) {
-    const AeroLoads<double> loads = aero_loads(v.wings, stroke.velocity, side, sign_of(pitch_margin(v.wings, speed)));
+    const AeroLoads<double> loads =
+        aero_loads(v.wings, stroke.velocity, side, sign_of(pitch_margin(v.wings, speed)), 1.0, stroke.value);
     return {loads.lift, loads.moment + loads.added_inertia * stroke.acceleration};
   }
   BladeElement<double> held = v.wings;
   const double alpha = 0.5 * pi + side * pitch->value, alpha_rate = side * pitch->velocity;
   held.angle_of_attack_min = alpha;
-  const AeroLoads<double> loads = aero_loads(held, stroke.velocity, side, -1.0);
+  const AeroLoads<double> loads = aero_loads(held, stroke.velocity, side, -1.0, 1.0, stroke.value);
   // What the law has in its inertia is here the moment of an air that is turned out of the way (model.md section 10).
   const double turned = v.wings.added_inertia * std::sin(alpha) * std::cos(alpha) * alpha_rate * stroke.velocity;
   return {loads.lift, loads.moment + loads.added_inertia * stroke.acceleration + turned};
@@ -33,7 +34,7 @@ AirLoads loads_on_hinges(const Vehicle<double>& v, const AngleMotion& stroke, co
   PitchingWings<double> air = v.pitch;
   air.hinge = {};
   air.pitch_inertia = air.mass_product = 0.0;
-  const PitchState<double> state = pitch_state(pitch.value, pitch.velocity, stroke.velocity, clap);
+  const PitchState<double> state = pitch_state(pitch.value, pitch.velocity, stroke.velocity, clap, stroke.value);
   constexpr double held = -1.0;  // the accelerations are stated
   const WingsAtPitch<double> wings =
       wings_at_pitch(v.wings, air, 0.0, state, sign_of(stroke.velocity), sign_of(pitch.velocity), held);

@@ -179,6 +179,37 @@ void validate_air_of_strips(const Design<double>& d) {
   }
 }
 
+/// Loads of a table come in the place of what blade elements need, and depend on no motion that the wings do not have.
+void validate_load_table(const Design<double>& d) {
+  const AerodynamicsDesign<double>& air = d.aerodynamics;
+  if (!air.load_table) {
+    for (const auto& [given, key] : {std::pair{air.table_air_density.has_value(), load_table_key::air_density.path},
+                                     {air.table_wings.has_value(), load_table_key::wings.path}}) {
+      if (given) throw ParameterError(key, "is of a table of loads: give aerodynamics.type = \"tabulated\"");
+    }
+    return;
+  }
+  for (const auto& [given, key] : {std::pair{air.lifting_span.has_value(), tip_loss_key::lifting_span.path},
+                                   {air.induced_velocity.has_value(), induced_velocity_key::share.path},
+                                   {air.clap.amplitude.has_value(), clap_and_fling_key::amplitude.path},
+                                   {d.wing.torsion.stiffness.has_value(), torsion_key::stiffness.path}}) {
+    if (given) throw ParameterError(key, "is not for tabulated loads, which hold for the wings as they are");
+  }
+  const LoadTable& table = *air.load_table;
+  const bool of_pitch = table.axis(LoadCoordinate::pitch_angle) || table.axis(LoadCoordinate::pitch_velocity);
+  if (follows_pitch_law(d) && of_pitch) {
+    throw ParameterError(load_table_key::file,
+                         "the load table depends on the pitch, which follows the stroke here; leave its columns out, "
+                         "or give pitch.stiffness");
+  }
+  if (follows_pitch_law(d)) return;
+  if (!table.axis(LoadCoordinate::pitch_angle) || !table.has_pitch_moment()) {
+    throw ParameterError(load_table_key::file,
+                         "of wings that pitch on a hinge the load table needs the columns pitch_angle, with more than "
+                         "one value, and pitch_moment");
+  }
+}
+
 /// A moment of inertia that is stated grows with the scale or does not; one that follows has no choice.
 void validate_scale(const WingDesign<double>& wing) {
   if (wing.scale_inertia || !(wing.areal_density || wing.resonance)) return;
@@ -303,6 +334,7 @@ void validate(const Design<double>& d) {
 
   validate_angle_of_attack(air);
   validate_air_of_strips(d);
+  validate_load_table(d);
   validate_scale(d.wing);
 
   const Vehicle<double> v = resolve(with_any_pitch_coefficient(d));

@@ -113,6 +113,10 @@ struct ClapGiven {
   static constexpr std::string_view text = "aerodynamics.clap_and_fling.amplitude";
   static constexpr bool holds(const auto& d) { return d.aerodynamics.clap.amplitude.has_value(); }
 };
+struct LoadsTabulated {
+  static constexpr std::string_view text = "aerodynamics.type = tabulated";
+  static constexpr bool holds(const auto& d) { return d.aerodynamics.load_table != nullptr; }
+};
 struct PiezoDriven {
   static constexpr std::string_view text = "piezo.force_per_volt";
   static constexpr bool holds(const auto& d) { return d.piezo.force_per_volt.has_value(); }

@@ -368,7 +368,8 @@ constexpr auto wing_rows() {
                "translational-2022"},
               [](const D& d) {
                 const std::string& name = d.aerodynamics.coefficients_name;
-                return name == "custom" || d.aerodynamics.coefficients.table ? std::string() : name;
+                const bool named = name != "custom" && !d.aerodynamics.coefficients.table && !d.aerodynamics.load_table;
+                return named ? name : std::string();
               }),
       wave_number<S>(
           {"aerodynamics.coefficients.lift.offset", "1", range::any, "required", "A of C_L = A + B sin(C alpha + D)"},
@@ -404,6 +405,31 @@ constexpr auto wing_rows() {
                 "none",
                 "instead of lift and drag: rows [angle of attack, C_L, C_D], natural cubic splines, see below",
                 {"lift", "drag"}}),
+      text<S>({load_table_key::type,
+               "",
+               {"quasi-steady or tabulated"},
+               "quasi-steady",
+               "tabulated: lift and moments of the air are read from a table over the motion of the wings, in place of "
+               "coefficients, rotational lift and rotational damping"},
+              [](const D& d) { return std::string(LoadsTabulated::holds(d) ? "tabulated" : ""); }),
+      table<S, LoadsTabulated>({load_table_key::file,
+                                "",
+                                {"name of a CSV file"},
+                                "none",
+                                "table of loads: columns flapping_velocity, lift, stroke_moment and others, see below",
+                                {"load_table"}}),
+      table<S, LoadsTabulated>({load_table_key::rows,
+                                "",
+                                {"rows of seven values"},
+                                "none",
+                                "table of loads in place: rows [stroke angle, flapping velocity, pitch angle, pitch "
+                                "velocity, lift, stroke moment, pitch moment]",
+                                {"file"}}),
+      alternative<S, LoadsTabulated>(row(load_table_key::air_density, "aerodynamics.air_density",
+                                         "density of the air for which the table holds; loads go with the density"),
+                                     [](auto& d) -> auto& { return d.aerodynamics.table_air_density; }),
+      alternative<S, LoadsTabulated>(row(load_table_key::wings, "all", "how many wings the loads of the table are of"),
+                                     [](auto& d) -> auto& { return d.aerodynamics.table_wings; }),
       number<S>(row(clap_and_fling_key::amplitude, "none",
                     "A: where wings meet at the reversal with the largest stroke angle, all aerodynamic forces are "
                     "multiplied by 1 + A exp(-s / (lambda c)) on their way apart, s being the way of the 70 % station "

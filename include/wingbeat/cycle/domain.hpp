@@ -23,9 +23,10 @@ enum class DomainLimit {
   input_power,           ///< P_e positive and finite
   flow_speed,            ///< wings below Mach 0.3: the coefficients are those of incompressible flow
   winding_temperature,   ///< of a motor that heats up: as the vehicle states, else 125 degC
-  reynolds_number        ///< that of the named force coefficients, or as the vehicle states
+  reynolds_number,       ///< that of the named force coefficients, or as the vehicle states
+  load_table             ///< motion of the wings within the grid of a table of loads
 };
-inline constexpr int domain_limit_count = int(DomainLimit::reynolds_number) + 1;
+inline constexpr int domain_limit_count = int(DomainLimit::load_table) + 1;
 
 /// Indexed by DomainLimit. A set bit: that limit is exceeded; none(): inside.
 using DomainStatus = std::bitset<domain_limit_count>;
@@ -80,21 +81,24 @@ std::string name_of(DomainStatus status);
 /// A limit that a cycle exceeds: what lies outside which bounds. In words: describe().
 struct DomainEvidence {
   enum class Quantity {
-    angle_of_attack_min,    ///< smallest of the cycle [deg]
-    angle_of_attack_max,    ///< largest of the cycle [deg], of wings that pitch on a hinge
-    angle_of_attack_range,  ///< the same [deg], where the coefficients end before the 90 deg of the reversals
-    stroke_angle,           ///< largest to either side, by the mechanism's geometry [deg]
-    stroke_amplitude,       ///< of a direct drive [deg]
-    wings_meet,             ///< either [deg], where two wings on one body meet before
-    residual_share,         ///< |P_residual / P_e| [1]
-    mechanism_efficiency,   ///< P_aero / P_m [1]
-    aerodynamic_power,      ///< P_aero [W] where the motor gives nothing; at most P_m
-    motor_efficiency,       ///< P_m / P_e [1]
-    input_power,            ///< P_e [W]
-    flow_speed,             ///< largest at the radius S_3/S_2 [m/s]
-    winding_temperature,    ///< of a motor that heats up [degC]
-    thermal_runaway,        ///< the same [degC], where the losses do not settle before copper melts
-    reynolds_number         ///< of the mean chord at the mean speed of the wing tips [1]
+    angle_of_attack_min,      ///< smallest of the cycle [deg]
+    angle_of_attack_max,      ///< largest of the cycle [deg], of wings that pitch on a hinge
+    angle_of_attack_range,    ///< the same [deg], where the coefficients end before the 90 deg of the reversals
+    stroke_angle,             ///< largest to either side, by the mechanism's geometry [deg]
+    stroke_amplitude,         ///< of a direct drive [deg]
+    wings_meet,               ///< either [deg], where two wings on one body meet before
+    residual_share,           ///< |P_residual / P_e| [1]
+    mechanism_efficiency,     ///< P_aero / P_m [1]
+    aerodynamic_power,        ///< P_aero [W] where the motor gives nothing; at most P_m
+    motor_efficiency,         ///< P_m / P_e [1]
+    input_power,              ///< P_e [W]
+    flow_speed,               ///< largest at the radius S_3/S_2 [m/s]
+    winding_temperature,      ///< of a motor that heats up [degC]
+    thermal_runaway,          ///< the same [degC], where the losses do not settle before copper melts
+    reynolds_number,          ///< of the mean chord at the mean speed of the wing tips [1]
+    table_stroke_angle,       ///< largest to either side [deg]
+    table_flapping_velocity,  ///< largest [rad/s]
+    table_pitch_angle         ///< largest to either side [deg]
   };
   DomainLimit limit;
   Quantity quantity;

@@ -7,22 +7,27 @@
 #include <vector>
 
 #include "wingbeat/core/names.hpp"
+#include "wingbeat/parts/load_table.hpp"
 #include "wingbeat/study/wing_motion.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
 
-enum class KinematicsFormat { csv, wabbit, pterasoftware };
+enum class KinematicsFormat { csv, wabbit, pterasoftware, load_table };
 template <>
 inline constexpr std::pair<const char*, KinematicsFormat> names_of<KinematicsFormat>[] = {
     {"csv", KinematicsFormat::csv},
     {"wabbit", KinematicsFormat::wabbit},
-    {"pterasoftware", KinematicsFormat::pterasoftware}};
+    {"pterasoftware", KinematicsFormat::pterasoftware},
+    {"load-table", KinematicsFormat::load_table}};
 
 /// Time, phase, angles with velocities and accelerations and, of wings that twist, the twist: a header line and one
 /// line for each instant, every number with the digits that read back to the same double. With `loads` also those of
 /// the model, in columns that read_loads() takes.
 std::string kinematics_csv(std::span<const WingInstant> wings, bool loads = false);
+
+/// Rows of a table of loads, in the columns that aerodynamics.file takes; `comment` on a line before them.
+std::string load_table_csv(std::span<const LoadTable::Row> rows, const std::string& comment);
 
 /// What a file with the motion as Fourier series states beside it.
 struct KinematicsSource {

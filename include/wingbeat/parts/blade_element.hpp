@@ -18,6 +18,7 @@
 #include "wingbeat/parts/clap_and_fling.hpp"
 #include "wingbeat/parts/coefficient_table.hpp"
 #include "wingbeat/parts/induced_velocity.hpp"
+#include "wingbeat/parts/load_table.hpp"
 #include "wingbeat/parts/tip_loss.hpp"
 
 namespace wingbeat {
@@ -111,11 +112,12 @@ struct BladeElement {
   TipLoss<S> tip = {};
   ClapAndFling<S> clap = {};
   InducedVelocity<S> wake = {};
+  TabulatedLoads<S> tabulated = {};  ///< in place of the formulas above, where there is a table
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.air_density, self.pitch_coefficient, self.s2, self.s3, self.coefficients, self.angle_of_attack_min,
-               self.added_inertia, self.tip, self.clap, self.wake);
+               self.added_inertia, self.tip, self.clap, self.wake, self.tabulated);
   }
 };
 
@@ -359,6 +361,12 @@ template <Scalar S>
   return sum;
 }
 
+/// Whether loads depend on where the stroke is.
+template <Scalar S>
+bool needs_stroke_angle(const BladeElement<S>& w) {
+  return claps(w.clap) || knows_stroke_angle(w.tabulated);
+}
+
 /// The loads at stroke velocity beta' [rad/s] of the sign `stroke`. `pitching` is the branch of the passive pitching:
 /// +1 free, -1 at the stop. Without `every_law` lanes know waves alone: no table, no stop, no added
 /// mass, no wake, no loss at tips. Always
@@ -372,11 +380,13 @@ template <Scalar S>
 /// \end{aligned}
 /// \f]
 ///
-/// all of it times the factor `clap` of clap and fling.
+/// all of it times the factor `clap` of clap and fling. Where there is a table of loads, lift and moment are its own,
+/// which may depend on the stroke angle beta [rad] as well.
 template <bool every_law = true, Scalar S>
 [[gnu::always_inline]] inline AeroLoads<S> aero_loads(const BladeElement<S>& w, const S& stroke_velocity,
                                                       const S& stroke, const S& pitching,
-                                                      [[maybe_unused]] const S& clap = S(1.0)) {
+                                                      [[maybe_unused]] const S& clap = S(1.0),
+                                                      [[maybe_unused]] const S& stroke_angle = S(0.0)) {
   const S speed = stroke * stroke_velocity;
   AeroLoads<S> loads;
   S alpha = S(pi / 2.0) - w.pitch_coefficient * speed;
@@ -399,6 +409,15 @@ template <bool every_law = true, Scalar S>
   if constexpr (ScalarTraits<S>::reads_tables || every_law) loads.pitch_margin = pitch_margin(w, speed);
   loads.added_inertia = S(0.0);
   if constexpr (every_law) loads.added_inertia = added_inertia(w, alpha, at_stop);
+  if constexpr (ScalarTraits<S>::reads_tables) {
+    if (is_given(w.tabulated)) {
+      const TableLoads<S> of_table = table_loads<S>(w.tabulated, {stroke_angle, stroke_velocity, S(0.0), S(0.0)});
+      loads.lift = of_table.lift;
+      loads.moment = of_table.stroke_moment;
+      loads.power = loads.moment * stroke_velocity;
+      return loads;
+    }
+  }
   if constexpr (every_law) {
     if (has_wake(w)) {
       const LiftAndDrag<S> strips = loads_in_wake(w, read_at, speed, clap);

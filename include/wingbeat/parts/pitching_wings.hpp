@@ -130,17 +130,19 @@ void validate(const PitchingWings<double>& wings, double stroke_inertia);
 template <Scalar S>
 struct PitchState {
   S sin_psi, cos_psi;
-  S psi;              ///< pitch angle [rad]
-  S velocity;         ///< psi' [rad/s]
-  S stroke_velocity;  ///< beta' [rad/s]
-  S clap = S(1.0);    ///< clap_factor()
+  S psi;                    ///< pitch angle [rad]
+  S velocity;               ///< psi' [rad/s]
+  S stroke_velocity;        ///< beta' [rad/s]
+  S clap = S(1.0);          ///< clap_factor()
+  S stroke_angle = S(0.0);  ///< beta [rad], where tabulated loads depend on it
 };
 
 template <Scalar S>
-PitchState<S> pitch_state(const S& psi, const S& velocity, const S& stroke_velocity, const S& clap = S(1.0)) {
+PitchState<S> pitch_state(const S& psi, const S& velocity, const S& stroke_velocity, const S& clap = S(1.0),
+                          const S& stroke_angle = S(0.0)) {
   using std::cos;
   using std::sin;
-  return {sin(psi), cos(psi), psi, velocity, stroke_velocity, clap};
+  return {sin(psi), cos(psi), psi, velocity, stroke_velocity, clap, stroke_angle};
 }
 
 /// Inertia of wings and added mass in stroke and pitch [kg m2], all of all wings together (model.md section 12).
@@ -233,7 +235,7 @@ struct PitchAeroLoads {
   S stroke_moment;    ///< \f$M_\mathrm{aero}\f$ about the stroke hinges [N m]
   S pitch_moment;     ///< \f$M_\mathrm{pitch}\f$ about the pitch hinges [N m]
   S power;            ///< \f$M_\mathrm{aero} \dot\beta + M_\mathrm{pitch} \dot\psi\f$ [W]
-  S tangential_lift = S(0.0);  ///< of the force along the chord [N]
+  S tangential_lift = S(0.0);  ///< of the force along the chord, and all lift of a table [N]
 };
 
 /// What the motion of a wing through the air makes of it, without rotation; against positive velocities.
@@ -363,10 +365,22 @@ PitchAeroLoads<S> aero_loads_of(const BladeElement<S>& w, const PitchingWings<S>
   return loads;
 }
 
-/// aero_loads_of() all wings.
+/// aero_loads_of() all wings, or those of a table.
 template <Scalar S>
 PitchAeroLoads<S> aero_loads(const BladeElement<S>& w, const PitchingWings<S>& p, const PitchState<S>& state,
                              const S& stroke, const S& turn) {
+  if constexpr (ScalarTraits<S>::reads_tables) {
+    if (is_given(w.tabulated)) {
+      const TableLoads<S> loads =
+          table_loads<S>(w.tabulated, {state.stroke_angle, state.stroke_velocity, state.psi, state.velocity});
+      return {S(0.5 * pi) + stroke * state.psi,
+              S(0.0),
+              loads.stroke_moment,
+              loads.pitch_moment,
+              loads.stroke_moment * state.stroke_velocity + loads.pitch_moment * state.velocity,
+              loads.lift};
+    }
+  }
   return aero_loads_of(w, p, w.s2, w.s3, p.moments, state, stroke, turn, [&](const S& alpha, TranslationLoads<S>& sum) {
     const S even = even_normal_force(w, p, state.psi);
     for (const WakeStrip<S>& strip : w.wake.strips.at) {

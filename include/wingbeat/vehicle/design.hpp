@@ -247,13 +247,16 @@ struct AerodynamicsDesign {
   std::optional<S> induced_velocity;  ///< share of the momentum theory's induced velocity that counts [1]
   std::optional<S> swept_area;        ///< A_0 of all wings [m2]; that of the stroke's sectors unless given
   ClapDesign<S> clap = {};
+  std::shared_ptr<const LoadTable> load_table = nullptr;  ///< in place of coefficients: aerodynamics.type = "tabulated"
+  std::optional<S> table_air_density;                     ///< of the table's loads [kg/m3]; air_density unless given
+  std::optional<S> table_wings;                           ///< how many wings they are of [1]; all unless given
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.air_density, self.pitch_coefficient, self.coefficients_name, self.coefficients,
                self.angle_of_attack_min, self.added_mass, self.kinematic_viscosity, self.reynolds_number_min,
                self.reynolds_number_max, self.angle_of_attack, self.lifting_span, self.induced_velocity,
-               self.swept_area, self.clap);
+               self.swept_area, self.clap, self.load_table, self.table_air_density, self.table_wings);
   }
 };
 

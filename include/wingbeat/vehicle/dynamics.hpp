@@ -77,7 +77,7 @@ PitchMotion<S> pitch_motion_at(const V<S>& v, const State& instant, const Mode<S
   const CrankKinematics<S>& k = instant.configuration.kinematics;
   const PitchState<S> state =
       pitch_state<S>(instant.pitch_angle, instant.pitch_velocity, k.stroke_slope * instant.omega,
-                     clap_factor(v, instant.configuration, mode));
+                     clap_factor(v, instant.configuration, mode), instant.configuration.stroke_angle);
   const S N_J = v.wing_count * v.wing_inertia;
   PitchMotion<S> m;
   const auto take = [&](const WingsAtPitch<S>& wings) {
@@ -211,7 +211,8 @@ Mode<S> mode_at(const Vehicle<S>& v, const FullState<S>& instant, Mode<S> mode, 
 template <Scalar S, class State>
 WingsAtPitch<S> wings_standing(const Vehicle<S>& v, const State& instant, const Mode<S>& mode) {
   const S N_J = v.wing_count * v.wing_inertia;
-  const PitchState<S> state = pitch_state<S>(instant.pitch_angle, instant.pitch_velocity, S(0.0));
+  const PitchState<S> state =
+      pitch_state<S>(instant.pitch_angle, instant.pitch_velocity, S(0.0), S(1.0), instant.configuration.stroke_angle);
   const S turn = has_friction(v.pitch.hinge) ? mode.turn : sign_of(instant.pitch_velocity);
   if constexpr (requires { instant.twist; }) {
     if (twists(v.pitch.torsion)) {

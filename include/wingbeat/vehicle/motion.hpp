@@ -76,7 +76,7 @@ template <Scalar S>
 struct Configuration {
   CrankKinematics<S> kinematics;
   S spring_moment;          ///< N_w k beta [N m]
-  S stroke_angle = S(0.0);  ///< beta [rad], of wings that clap; 0 of others
+  S stroke_angle = S(0.0);  ///< beta [rad], of wings whose loads depend on it; 0 of others
 };
 
 /// The configuration at a crank angle given by its sine and cosine.
@@ -86,7 +86,7 @@ template <template <Scalar> class V, Scalar S>
   configuration.kinematics = crank_kinematics(v.transmission, sin_theta, cos_theta);
   configuration.spring_moment = spring_moment(v, configuration.kinematics);
   if constexpr (ScalarTraits<S>::reads_tables) {
-    if (claps(v.wings.clap)) configuration.stroke_angle = stroke_angle(configuration.kinematics);
+    if (needs_stroke_angle(v.wings)) configuration.stroke_angle = stroke_angle(configuration.kinematics);
   }
   return configuration;
 }
@@ -133,8 +133,8 @@ S clap_factor(const V<S>& v, const Configuration<S>& configuration, const Mode<S
 template <bool every_law = true, template <Scalar> class V, Scalar S>
 [[gnu::always_inline]] inline StrokeLoads<S> stroke_loads(const V<S>& v, const Configuration<S>& configuration,
                                                           const S& stroke_velocity, const Mode<S>& mode) {
-  const AeroLoads<S> aero =
-      aero_loads<every_law>(v.wings, stroke_velocity, mode.stroke, mode.pitching, clap_factor(v, configuration, mode));
+  const AeroLoads<S> aero = aero_loads<every_law>(v.wings, stroke_velocity, mode.stroke, mode.pitching,
+                                                  clap_factor(v, configuration, mode), configuration.stroke_angle);
   S inertia = v.wing_count * v.wing_inertia;
   if constexpr (every_law) inertia = inertia + aero.added_inertia;
   return {aero, inertia, aero.moment};

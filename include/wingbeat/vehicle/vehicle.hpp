@@ -287,6 +287,12 @@ Vehicle<S> resolve(const Design<S>& design, Condition condition = Condition::air
   }
   if (!follows_pitch_law(design) && wings) v.pitch = pitching_wings_of(design, v.wing_count, v.wings.air_density);
   if (air) set_air_of_strips(design, v.wing_count, v);
+  if (air && design.aerodynamics.load_table) {
+    const AerodynamicsDesign<S>& a = design.aerodynamics;
+    v.wings.tabulated.table = a.load_table;
+    if (a.table_air_density) v.wings.tabulated.factor = a.air_density / *a.table_air_density;
+    if (a.table_wings) v.wings.tabulated.factor = v.wings.tabulated.factor * v.wing_count / *a.table_wings;
+  }
   v.wing_limits = wing_limits_of(design, v.wing_count, condition);
   return v;
 }

@@ -836,6 +836,37 @@ class AerodynamicsSection(Section):
         Range: translational-2022, normal-force-robofly (with pitch.stiffness), robobee, normal-tangential, or a table of the keys below. Default: translational-2022.
         """
     @property
+    def type(self) -> str | None:
+        """tabulated: lift and moments of the air are read from a table over the motion of the wings, in place of coefficients, rotational lift and rotational damping.
+        Range: quasi-steady or tabulated. Default: quasi-steady.
+        """
+    @property
+    def file(self) -> str | None:
+        """table of loads: columns flapping_velocity, lift, stroke_moment and others, see below.
+        Range: name of a CSV file. Default: none.
+        Only with aerodynamics.type = tabulated.
+        Instead of aerodynamics.load_table.
+        """
+    @property
+    def load_table(self) -> str | None:
+        """table of loads in place: rows [stroke angle, flapping velocity, pitch angle, pitch velocity, lift, stroke moment, pitch moment].
+        Range: rows of seven values. Default: none.
+        Only with aerodynamics.type = tabulated.
+        Instead of aerodynamics.file.
+        """
+    @property
+    def table_air_density(self) -> Quantity | None:
+        """density of the air for which the table holds; loads go with the density.
+        [kg/m3] Range: > 0. Default: aerodynamics.air_density.
+        Only with aerodynamics.type = tabulated.
+        """
+    @property
+    def table_wings(self) -> Quantity | None:
+        """how many wings the loads of the table are of.
+        Number. Range: > 0. Default: all.
+        Only with aerodynamics.type = tabulated.
+        """
+    @property
     def clap_and_fling(self) -> AerodynamicsClapAndFlingSection:
         """The section [aerodynamics.clap_and_fling]."""
 
