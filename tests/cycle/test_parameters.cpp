@@ -29,6 +29,13 @@ TEST(Parameters, TableIsConsistent) {
   }
 }
 
+/// A table of loads.
+std::shared_ptr<const LoadTable> two_rows() {
+  LoadTable::Row rest{}, fast{};
+  fast[1] = fast[4] = fast[5] = 1.0;
+  return std::make_shared<LoadTable>(std::vector{rest, fast});
+}
+
 /// Designs of every kind: each parameter has a place in one of them.
 std::vector<Design<double>> designs_of_every_kind() {
   std::vector<Design<double>> designs;
@@ -48,6 +55,9 @@ std::vector<Design<double>> designs_of_every_kind() {
         d.aerodynamics.clap.amplitude = 0.3;
         if (transmission == TransmissionType::direct) d.pitch.stiffness = 3e-4;
         designs.push_back(d);
+        Design<double> tabulated = d;
+        tabulated.aerodynamics.load_table = two_rows();
+        designs.push_back(tabulated);
         Design<double> further = d;
         further.wing.torsion.stiffness = 1e-3;
         if (transmission == TransmissionType::direct) further.piezo.force_per_volt = 1e-3;

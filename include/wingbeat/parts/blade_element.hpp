@@ -325,6 +325,28 @@ inline bool acts_by_strips(const BladeElement<double>& w) {
   return has_wake(w) || w.tip.s3 > 0.0 || w.coefficients.tangential > 0.0;
 }
 
+/// Adds lift [N] and, in the place of a drag, moment [N m] of a strip of loads_in_wake(). `half_density`: half of rho;
+/// `along_the_flow`: C_L(0).
+template <Scalar S>
+[[gnu::always_inline]] inline void add_strip_in_wake(const ForceCoefficients<S>& coefficients, const S& half_density,
+                                                     const WakeStrip<S>& strip, const StripFlow<S>& flow,
+                                                     const S& alpha, const S& along_the_flow, const S& clap,
+                                                     LiftAndDrag<S>& sum) {
+  const LiftAndDrag<S> of_set = force_coefficients<true>(coefficients, S(alpha - flow.inflow_angle));
+  const S C_L = of_set.lift - along_the_flow * square(flow.sine), C_D = of_set.drag;
+  const S closeness = S(1.0) + (clap - S(1.0)) * square(flow.cosine);
+  const S pressure = half_density * flow.square_of_speed * strip.area * closeness;
+  sum.lift = sum.lift + pressure * (C_L * flow.cosine - C_D * flow.sine);
+  sum.drag = sum.drag + pressure * strip.radius * (C_D * flow.cosine + C_L * flow.sine);
+}
+
+namespace detail {
+
+/// The strips of loads_in_wake() of coefficients without a table, several at a time.
+LiftAndDrag<double> strips_in_wake(const BladeElement<double>& w, double alpha, double stroke_speed, double clap);
+
+}  // namespace detail
+
 /// Lift [N] and, in the place of a drag, the moment against the stroke [N m] of wings in their wake, at the geometric
 /// angle of attack alpha [rad] and the stroke speed |beta'| [rad/s]. With U and phi of strip_flow() at each strip, and
 /// with \f$C_\mathrm{L}(\alpha - \varphi) - C_\mathrm{L}(0) \sin^2\varphi\f$ in the place of C_L: a chord along the
@@ -344,19 +366,17 @@ inline bool acts_by_strips(const BladeElement<double>& w) {
 template <Scalar S>
 [[gnu::noinline]] LiftAndDrag<S> loads_in_wake(const BladeElement<S>& w, const S& alpha, const S& stroke_speed,
                                                const S& clap) {
-  using std::cos;
-  using std::sin;
   LiftAndDrag<S> sum{S(0.0), clap * tip_drag_moment(w, stroke_speed)};
+  if constexpr (std::is_same_v<S, double>) {
+    if (!w.coefficients.table) {
+      const LiftAndDrag<double> strips = detail::strips_in_wake(w, alpha, stroke_speed, clap);
+      return {strips.lift, sum.drag + strips.drag};
+    }
+  }
   const S along_the_flow = force_coefficients<true>(w.coefficients, S(0.0)).lift;
   for (const WakeStrip<S>& strip : w.wake.strips.at) {
-    const StripFlow<S> flow = strip_flow(w.wake, strip, stroke_speed);
-    const LiftAndDrag<S> of_set = force_coefficients<true>(w.coefficients, S(alpha - flow.inflow_angle));
-    const S c = cos(flow.inflow_angle), s = sin(flow.inflow_angle);
-    const S C_L = of_set.lift - along_the_flow * square(s), C_D = of_set.drag;
-    const S closeness = S(1.0) + (clap - S(1.0)) * square(c);
-    const S pressure = S(0.5) * w.air_density * flow.square_of_speed * strip.area * closeness;
-    sum.lift = sum.lift + pressure * (C_L * c - C_D * s);
-    sum.drag = sum.drag + pressure * strip.radius * (C_D * c + C_L * s);
+    add_strip_in_wake(w.coefficients, S(S(0.5) * w.air_density), strip,
+                      strip_flow(w.wake.velocity, strip, stroke_speed), alpha, along_the_flow, clap, sum);
   }
   return sum;
 }

@@ -90,14 +90,18 @@ template <Scalar S>
 struct StripFlow {
   S square_of_speed;  ///< U^2 [m2/s2]
   S inflow_angle;     ///< phi [rad], 0 to pi/2
+  S cosine, sine;     ///< of phi; 0 where there is no flow
 };
 template <Scalar S>
-StripFlow<S> strip_flow(const InducedVelocity<S>& w, const WakeStrip<S>& strip, const S& stroke_speed) {
+StripFlow<S> strip_flow(const S& induced_velocity, const WakeStrip<S>& strip, const S& stroke_speed) {
   using std::atan;
+  using std::sqrt;
   const S u = strip.radius * stroke_speed;
   // Of lanes some may have no induced velocity.
-  const S v = w.velocity + S(1e-300);
-  return {square(u) + square(w.velocity), S(0.5 * pi) - atan(S(u / v))};
+  const S v = induced_velocity + S(1e-300);
+  const S square_of_speed = square(u) + square(induced_velocity);
+  const S per_speed = S(1.0) / sqrt(S(square_of_speed + S(1e-300)));
+  return {square_of_speed, S(0.5 * pi) - atan(S(u / v)), u * per_speed, induced_velocity * per_speed};
 }
 
 namespace detail {

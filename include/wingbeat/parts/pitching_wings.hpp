@@ -298,13 +298,11 @@ void add_strip_in_wake(const BladeElement<S>& w, const PitchingWings<S>& p, cons
                        const PitchState<S>& state, const S& stroke, const S& alpha, const S& even,
                        TranslationLoads<S>& sum) {
   using std::cos;
-  using std::sin;
-  const StripFlow<S> flow = strip_flow(w.wake, strip, S(stroke * state.stroke_velocity));
+  const StripFlow<S> flow = strip_flow(w.wake.velocity, strip, S(stroke * state.stroke_velocity));
   const S angle = alpha - flow.inflow_angle;
-  const S closeness = S(1.0) + (state.clap - S(1.0)) * square(S(cos(flow.inflow_angle)));
+  const S closeness = S(1.0) + (state.clap - S(1.0)) * square(flow.cosine);
   const S pressure = S(0.5) * w.air_density * flow.square_of_speed * strip.area * closeness;
-  const S force =
-      stroke * pressure * (normal_force_coefficient(w, p, angle) - even * square(S(sin(flow.inflow_angle))));
+  const S force = stroke * pressure * (normal_force_coefficient(w, p, angle) - even * square(flow.sine));
   sum.normal = sum.normal + force;
   sum.stroke_moment = sum.stroke_moment + force * strip.radius;
   sum.pitch_moment = sum.pitch_moment + force * strip.chord * (centre_of_pressure(p, angle) - p.axis);
