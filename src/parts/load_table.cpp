@@ -70,8 +70,8 @@ std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vec
   if (n == 2) return {secant[0], secant[0]};
   const auto limited = [](double d, double before, double after) {
     if (!(before * after > 0.0)) return 0.0;
-    const double most = 3.0 * std::min(std::abs(before), std::abs(after));
-    return std::clamp(d, -most, most);
+    const double limit = 3.0 * std::min(std::abs(before), std::abs(after));
+    return std::clamp(d, -limit, limit);
   };
   for (std::size_t k = 1; k + 1 < n; ++k) {
     const double h0 = x[k] - x[k - 1], h1 = x[k + 1] - x[k];

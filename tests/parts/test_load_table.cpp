@@ -213,11 +213,11 @@ TEST(LoadTable, IsRefusedWithTheReason) {
   lifting[4] = 0.1;
   expect({lifting, fast}, "a lift of 0.1 N for wings at rest, at flapping_velocity = 0 rad/s");
   // Places and what is missing of a grid.
-  const auto at = [](double beta, double v, double psi) { return Row{beta, v, psi, none, v * v, v, v}; };
-  expect({at(0.0, 0.0, none), at(1.0, 0.0, none), at(0.0, 5.0, none), at(1.0, 5.0, none)}, "both half-strokes");
-  expect({at(none, 0.0, -1.0), at(none, 0.0, 1.0), at(none, 5.0, 1.0)},
+  const auto row = [](double beta, double v, double psi) { return Row{beta, v, psi, none, v * v, v, v}; };
+  expect({row(0.0, 0.0, none), row(1.0, 0.0, none), row(0.0, 5.0, none), row(1.0, 5.0, none)}, "both half-strokes");
+  expect({row(none, 0.0, -1.0), row(none, 0.0, 1.0), row(none, 5.0, 1.0)},
          "no row at flapping_velocity = -5 rad/s, pitch_angle = 1 rad");
-  expect({at(none, 0.0, 0.5), at(none, 0.0, 1.0), at(none, 5.0, 0.5), at(none, 5.0, 1.0)},
+  expect({row(none, 0.0, 0.5), row(none, 0.0, 1.0), row(none, 5.0, 0.5), row(none, 5.0, 1.0)},
          "pitch_angle must then be the same to either side of 0, got 0.5 to 1 rad");
 }
 
