@@ -64,6 +64,9 @@ py::tuple motor_curves(const Design<double>& design, std::optional<double> volta
 /// C_L, C_D, C_N and, of wings on hinges, the centre of pressure over angles of attack [rad].
 py::list coefficient_curves(const Design<double>& design, const std::vector<double>& angles) {
   const Vehicle<double> vehicle = resolved(design);
+  if (is_given(vehicle.wings.tabulated)) {
+    throw ParameterError(load_table_key::type, "tabulated loads have no coefficients");
+  }
   const ForceCoefficients<double>& c = vehicle.wings.coefficients;
   Columns columns(4);
   listening([&] {

@@ -144,8 +144,9 @@ void start_up_group(Table& table, const TransientResult& s, bool flapping) {
 /// lift the aerodynamic power grows with C_D / C_L^(3/2).
 std::string pitch_remark(const RunResult& result) {
   const double angle = result.metrics[Metric::angle_of_attack_min] / degrees_per_radian;
-  if (!follows_pitch_law(result.design) || !std::isfinite(angle)) return "";
-  const ForceCoefficients<double>& c = result.design.aerodynamics.coefficients;
+  const AerodynamicsDesign<double>& air = result.design.aerodynamics;
+  if (!follows_pitch_law(result.design) || !std::isfinite(angle) || air.load_table) return "";
+  const ForceCoefficients<double>& c = air.coefficients;
   const auto lift_per_power = [&](double alpha) {
     return std::pow(std::max(lift_coefficient(c, alpha), 0.0), 1.5) / std::max(drag_coefficient(c, alpha), 1e-12);
   };

@@ -41,8 +41,9 @@ class LiftTrace {
       : trials_(std::move(trials)), target_(lift), where_(where) {
     const BladeElement<double>& w = trials_.vehicle().wings;
     const double rate = std::abs(w.coefficients.lift.rate);
-    step_deg_ = w.coefficients.table ? max_table_step_deg
-                                     : std::min(degrees_per_radian * max_phase / std::max(rate, 1e-3), 30.0);
+    step_deg_ = w.coefficients.table || is_given(w.tabulated)
+                    ? max_table_step_deg
+                    : std::min(degrees_per_radian * max_phase / std::max(rate, 1e-3), 30.0);
   }
 
   FrequencySearch run() {
@@ -69,7 +70,9 @@ class LiftTrace {
     const Vehicle<double>& v = trials_.vehicle();
     if (!drive_of(v).rotates) return 0.2 * where_.nominal;
     double max_coefficient = 0.0;
-    if (const auto& table = v.wings.coefficients.table) {
+    if (is_given(v.wings.tabulated)) {
+      max_coefficient = 2.0;  // about that of any wing
+    } else if (const auto& table = v.wings.coefficients.table) {
       for (const double c : table->lift()) max_coefficient = std::max(max_coefficient, std::abs(c));
     } else {
       max_coefficient = std::abs(v.wings.coefficients.lift.offset) + std::abs(v.wings.coefficients.lift.amplitude);
