@@ -63,7 +63,8 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
   figure.add(
       "set multiplot\nset lmargin at screen {}\nset rmargin at screen {}\nset offsets graph 0.04, graph 0.04, 0, 0\n",
       left, right);
-  figure.add("set yrange [-{0}:{0}]\nset ytics autofreq\n", 1.08 * highest);
+  highest *= 1.08;
+  figure.add("set yrange [{}:{}]\nset ytics autofreq\n", axes.reference > 0.0 ? 0.0 : -highest, highest);
   for (std::size_t p = 0; p < panels.size(); ++p) {
     if (p > 0) figure.next_panel();
     const double top = 1.0 - (head + gap + (each + gap) * double(p)) / inches;
@@ -77,7 +78,7 @@ void plot_panels(std::span<const PointPanel> panels, const PointAxes& axes, Plot
       figure.text(axes.x, 7.5, fmt::format("screen {},{} center", 0.5 * (left + right), 0.09 / inches));
       key.draw(figure, left * format.width, 0.25);
     }
-    std::string plots = "0 with lines lt 1 dt 1 lw 0.5 lc rgb '#404040'";
+    std::string plots = fmt::format("{} with lines lt 1 dt 1 lw 0.5 lc rgb '#404040'", axes.reference);
     for (std::size_t s = 0; s < panels[p].series.size(); ++s) {
       const PointSeries& series = panels[p].series[s];
       if (series.points.empty()) continue;

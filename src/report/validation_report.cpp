@@ -209,7 +209,7 @@ void plot_quantities(const ValidationSet& set, const ValidationStage& stage, Plo
     panels.push_back({set.quantities[q].name, {}});
     if (!series.points.empty()) panels.back().series.push_back(std::move(series));
   }
-  plot_panels(panels, {set.name, set.position_name, "computed over published", 1.0}, format, file);
+  plot_panels(panels, {set.name, set.position_name, "computed over published", 1.0, 1.0}, format, file);
 }
 
 }  // namespace

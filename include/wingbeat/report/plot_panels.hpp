@@ -22,7 +22,8 @@ struct PointPanel {
 };
 struct PointAxes {
   std::string title, x, y;
-  double y_least = 0.0;  ///< the vertical axis, symmetric about 0, reaches at least this far
+  double y_least = 0.0;    ///< the vertical axis, symmetric about 0, reaches at least this far
+  double reference = 0.0;  ///< a line at this height; where it is > 0, of ratios, the axis begins at 0
 };
 
 /// Panels of points one below the other, all on the same vertical scale. Throws like plot_cycle.
