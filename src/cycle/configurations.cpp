@@ -3,16 +3,8 @@
 #include <array>
 #include <cmath>
 
-#if defined(__x86_64__) || defined(_M_X64)
-#define WINGBEAT_LANES xsimd::sse2
-#elif defined(__aarch64__)
-#define WINGBEAT_LANES xsimd::neon64
-#endif
-
-#ifdef WINGBEAT_LANES
-#include "wingbeat/core/pack.hpp"
+#include "wingbeat/core/base_lanes.hpp"
 #include "wingbeat/vehicle/motion.hpp"
-#endif
 
 namespace wingbeat {
 namespace {
@@ -23,9 +15,9 @@ void one_by_one(const Vehicle<double>& v, std::span<const double> theta,
     configurations[n] = configuration_at(v, std::sin(theta[n]), std::cos(theta[n]));
 }
 
-#ifdef WINGBEAT_LANES
+#ifdef WINGBEAT_BASE_LANES
 
-using Lanes = Pack<WINGBEAT_LANES, 2>;
+using Lanes = BaseLanes<2>;
 
 void on_lanes(const Vehicle<double>& v, std::span<const double> theta,
               std::span<Configuration<double>> configurations) {
@@ -62,7 +54,7 @@ void on_lanes(const Vehicle<double>& v, std::span<const double> theta,
 
 void configurations_at(const Vehicle<double>& v, std::span<const double> theta,
                        std::span<Configuration<double>> configurations) {
-#ifdef WINGBEAT_LANES
+#ifdef WINGBEAT_BASE_LANES
   if (v.transmission.type == TransmissionType::slider_crank) return on_lanes(v, theta, configurations);
 #endif
   one_by_one(v, theta, configurations);

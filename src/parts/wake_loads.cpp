@@ -3,24 +3,15 @@
 #include <array>
 #include <cstddef>
 
+#include "wingbeat/core/base_lanes.hpp"
 #include "wingbeat/core/members.hpp"
 #include "wingbeat/parts/blade_element.hpp"
-
-#if defined(__x86_64__) || defined(_M_X64)
-#define WINGBEAT_LANES xsimd::sse2
-#elif defined(__aarch64__)
-#define WINGBEAT_LANES xsimd::neon64
-#endif
-
-#ifdef WINGBEAT_LANES
-#include "wingbeat/core/pack.hpp"
-#endif
 
 namespace wingbeat {
 namespace {
 
-#ifdef WINGBEAT_LANES
-using StripLanes = Pack<WINGBEAT_LANES, 4>;
+#ifdef WINGBEAT_BASE_LANES
+using StripLanes = BaseLanes<4>;
 #else
 using StripLanes = double;
 #endif
@@ -29,7 +20,7 @@ static_assert(wake_strip_count % strip_lanes == 0);
 
 /// One number of `strip_lanes` strips, from the strip `first` on.
 StripLanes gathered_strips(const WakeStrips<double>& strips, std::size_t first, double WakeStrip<double>::* number) {
-#ifdef WINGBEAT_LANES
+#ifdef WINGBEAT_BASE_LANES
   alignas(64) std::array<double, strip_lanes> numbers;
   for (std::size_t n = 0; n < strip_lanes; ++n) numbers[n] = strips.at[first + n].*number;
   return StripLanes::load(numbers.data());
@@ -39,7 +30,7 @@ StripLanes gathered_strips(const WakeStrips<double>& strips, std::size_t first, 
 }
 
 double sum_of_lanes(const StripLanes& x) {
-#ifdef WINGBEAT_LANES
+#ifdef WINGBEAT_BASE_LANES
   alignas(64) std::array<double, strip_lanes> numbers;
   x.store(numbers.data());
   double sum = 0.0;

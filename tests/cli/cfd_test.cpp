@@ -65,7 +65,8 @@ TEST_F(Cfd, AFactorOnTheCoefficientsIsFound) {
   const Outcome text = run({"compare-loads", plain, path("loads.csv"), "--plot", path("loads.svg"), "--set",
                             "aerodynamics.air_density=1.47 kg/m3", "--json"});
   ASSERT_EQ(text.status, 0) << text.err;
-  for (const Json& load : text.json()["loads"]) {
+  const Json comparison = text.json();
+  for (const Json& load : comparison["loads"]) {
     EXPECT_NEAR(load["mean_ratio"].get<double>(), 1.2, load["quantity"] == "lift" ? 1e-3 : 0.2);
     EXPECT_GT(load["variance_in_phase"].get<double>(), 0.9999);
   }

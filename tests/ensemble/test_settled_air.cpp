@@ -9,6 +9,7 @@
 #include "vehicle/metrics_apart.hpp"
 #include "vehicle/orbit_derivatives.hpp"
 #include "vehicle/random_vehicle.hpp"
+#include "vehicle/steady_orbit.hpp"
 #include "wingbeat/cycle/air_equilibrium.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
@@ -39,46 +40,39 @@ Design<double> clapping(Design<double> d, double meeting_angle) {
   return d;
 }
 
-SteadyFlapping flapping(const Design<double>& d, double tolerance = 1e-9) {
-  validate(d);
-  const SteadyFlapping found = find_steady_flapping(resolve(d), {.tolerance = tolerance}, start_up_in_time());
-  EXPECT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
-  return found;
-}
-
 /// Stated by value, that of the orbit; a crank that meets at its reversal, a direct drive that does at 1.1 times it.
 double meeting_angle_of(const Design<double>& d) {
-  const SteadyFlapping found = flapping(d);
+  const SteadyFlapping found = steady_orbit(d);
   return found.metrics[Metric::stroke_amplitude] + 0.05;
 }
 
 TEST(InducedVelocity, IsThatOfTheLiftThatItLeaves) {
   for (const double share : {0.4, 1.0}) {
     const Design<double> d = in_its_wake(with_outline(reference_design()), share);
-    const SteadyFlapping found = flapping(d);
+    const SteadyFlapping found = steady_orbit(d);
     const Metrics<double>& m = found.metrics;
     const double disc = 2.0 * m[Metric::stroke_amplitude] * square(66e-3);
     const double expected = share * std::sqrt(m[Metric::lift_mean] / (2.0 * d.aerodynamics.air_density * disc));
     EXPECT_NEAR(m[Metric::induced_velocity] / expected, 1.0, 1e-13);
     EXPECT_NEAR(found.record.vehicle().wings.wake.velocity / expected, 1.0, 1e-8);
-    EXPECT_LT(m[Metric::lift_mean], flapping(with_outline(reference_design())).metrics[Metric::lift_mean]);
+    EXPECT_LT(m[Metric::lift_mean], steady_orbit(with_outline(reference_design())).metrics[Metric::lift_mean]);
     EXPECT_LT(std::abs(energy_audit(m).imbalance), 1e-8 * m[Metric::power_electrical]);
   }
   Design<double> stated = in_its_wake(with_outline(reference_design()));
   stated.aerodynamics.swept_area = 0.02;
-  const Metrics<double> m = flapping(stated).metrics;
+  const Metrics<double> m = steady_orbit(stated).metrics;
   EXPECT_NEAR(m[Metric::induced_velocity] / std::sqrt(m[Metric::lift_mean] / (2.0 * 1.225 * 0.02)), 1.0, 1e-13);
 }
 
 TEST(SettledAir, WithoutAnyOptionNothingSettles) {
   const Design<double> d = with_outline(reference_design());
   EXPECT_FALSE(settles_air(resolve(d)));
-  EXPECT_TRUE(std::isnan(flapping(d).metrics[Metric::induced_velocity]));
+  EXPECT_TRUE(std::isnan(steady_orbit(d).metrics[Metric::induced_velocity]));
   Design<double> none = d;
   none.aerodynamics.induced_velocity = 0.0;
   none.aerodynamics.lifting_span = 1.0;
   none.aerodynamics.clap = {0.0, 1.0, 1.0, 0.7};
-  const SteadyFlapping plain = flapping(d), off = flapping(none);
+  const SteadyFlapping plain = steady_orbit(d), off = steady_orbit(none);
   for (int m = 0; m < metric_count; ++m) {
     const double a = plain.metrics[Metric(m)], b = off.metrics[Metric(m)];
     EXPECT_TRUE(a == b || (std::isnan(a) && std::isnan(b))) << metric_info(Metric(m)).key;
@@ -109,14 +103,8 @@ TEST(SettledAir, OrbitsAgreeWithTheSimulationInTime) {
                                 clapping(hinged, meeting_angle_of(hinged))};
   for (const Design<double>& d : all) {
     const std::ptrdiff_t n = &d - all;
-    const SteadyFlapping orbit = flapping(d, 1e-8);
-    TransientOptions options;
-    options.tolerance = 1e-7;
-    const TransientResult time = simulate_start_up(in_air(resolve(d), air_of(orbit.metrics)), options);
-    ASSERT_TRUE(time.metrics) << n << ": " << describe(time.evidence);
-    std::string where;
-    EXPECT_LT(metrics_apart(orbit.metrics, *time.metrics, where), 1e-6) << n << ", " << where;
-    EXPECT_LT(std::abs(energy_audit(orbit.metrics).imbalance), 1e-7 * orbit.metrics[Metric::power_electrical]) << n;
+    const SteadyFlapping orbit = steady_orbit(d, 1e-8);
+    expect_as_in_time(orbit, d, n);
   }
 }
 
@@ -198,9 +186,9 @@ TEST(SettledAir, DerivativesFollowTheAir) {
 
 TEST(ClapAndFling, NeedsWingsThatComeClose) {
   const Design<double> d = with_outline(reference_design());
-  const double amplitude = flapping(d).metrics[Metric::stroke_amplitude];
-  const Metrics<double> plain = flapping(d).metrics, close = flapping(clapping(d, amplitude + 0.05)).metrics,
-                        far = flapping(clapping(d, amplitude + 0.8)).metrics;
+  const double amplitude = steady_orbit(d).metrics[Metric::stroke_amplitude];
+  const Metrics<double> plain = steady_orbit(d).metrics, close = steady_orbit(clapping(d, amplitude + 0.05)).metrics,
+                        far = steady_orbit(clapping(d, amplitude + 0.8)).metrics;
   EXPECT_GT(close[Metric::lift_mean], 1.005 * plain[Metric::lift_mean]);
   EXPECT_EQ(far[Metric::lift_mean], plain[Metric::lift_mean]);
 }

@@ -10,16 +10,14 @@
 
 #include "vehicle/direct_design.hpp"
 #include "vehicle/hinged_design.hpp"
-#include "vehicle/metrics_apart.hpp"
 #include "vehicle/orbit_derivatives.hpp"
 #include "vehicle/random_vehicle.hpp"
+#include "vehicle/steady_orbit.hpp"
 #include "wingbeat/cycle/domain.hpp"
-#include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/parts/coefficient_sets.hpp"
-#include "wingbeat/time/transient.hpp"
 
 namespace wingbeat {
 namespace {
@@ -32,16 +30,9 @@ std::vector<double> even(double largest, int count) {
   return values;
 }
 
-SteadyFlapping flapping_orbit(const Design<double>& d, double tolerance = 1e-9) {
-  validate(d);
-  const SteadyFlapping found = find_steady_flapping(resolve(d), {.tolerance = tolerance}, start_up_in_time());
-  EXPECT_EQ(found.status, FlappingStatus::flapping) << describe(found.evidence);
-  return found;
-}
-
 /// The design with the loads of its own blade elements as a table; `skew` makes them depend on the stroke angle.
 Design<double> tabulated(Design<double> d, int count, double skew = 0.0) {
-  const Metrics<double> m = flapping_orbit(d, 1e-6).metrics;
+  const Metrics<double> m = steady_orbit(d, 1e-6).metrics;
   const double fastest = 1.3 * m[Metric::flapping_velocity_peak], widest = 1.2 * m[Metric::stroke_amplitude];
   const Vehicle<double> v = resolve(d);
   const std::vector<double> strokes = skew != 0.0 ? even(widest, 5) : std::vector{none};
@@ -83,10 +74,10 @@ TEST(TabulatedLoads, OfTheModelGiveTheModel) {
   const Design<double> designs[] = {reference_design(), direct_design(), hinged()};
   for (const Design<double>& d : designs) {
     const std::ptrdiff_t n = &d - designs;
-    const Metrics<double> model = flapping_orbit(d).metrics;
+    const Metrics<double> model = steady_orbit(d).metrics;
     double before = 1.0;
     for (const int count : {11, 21, 41}) {
-      const Metrics<double> of_table = flapping_orbit(tabulated(d, count)).metrics;
+      const Metrics<double> of_table = steady_orbit(tabulated(d, count)).metrics;
       double apart = 0.0;
       for (const Metric m : {Metric::power_electrical, Metric::lift_mean, Metric::power_aerodynamic}) {
         apart = std::max(apart, std::abs(of_table[m] / model[m] - 1.0));
@@ -103,15 +94,9 @@ TEST(TabulatedLoads, OrbitsAgreeWithTheSimulationInTime) {
                                 tabulated(hinged(), 11),           tabulated(hinged(), 11, 0.2)};
   for (const Design<double>& d : all) {
     const std::ptrdiff_t n = &d - all;
-    const SteadyFlapping orbit = flapping_orbit(d, 1e-8);
+    const SteadyFlapping orbit = steady_orbit(d, 1e-8);
     EXPECT_EQ(name_of(domain_of(orbit.record.vehicle(), orbit.metrics)), "inside") << n;
-    TransientOptions options;
-    options.tolerance = 1e-7;
-    const TransientResult time = simulate_start_up(resolve(d), options);
-    ASSERT_TRUE(time.metrics) << n << ": " << describe(time.evidence);
-    std::string where;
-    EXPECT_LT(metrics_apart(orbit.metrics, *time.metrics, where), 1e-6) << n << ", " << where;
-    EXPECT_LT(std::abs(energy_audit(orbit.metrics).imbalance), 1e-7 * orbit.metrics[Metric::power_electrical]) << n;
+    expect_as_in_time(orbit, d, n);
   }
 }
 
@@ -122,7 +107,7 @@ TEST(TabulatedLoads, BatchesLeaveThemToTheScalarSolver) {
   EnsembleOptions options;
   options.tolerance = 1e-7;
   solve_ensemble(members, options, start_up_in_time(), found);
-  const Metrics<double> alone = flapping_orbit(d).metrics;
+  const Metrics<double> alone = steady_orbit(d).metrics;
   for (const EnsembleOutcome& o : found) {
     EXPECT_TRUE(o.scalar);
     EXPECT_NEAR(o.metrics[Metric::lift_mean] / alone[Metric::lift_mean], 1.0, 1e-6);
@@ -151,11 +136,11 @@ TEST(TabulatedLoads, DerivativesAreThoseOfDifferences) {
 
 TEST(TabulatedLoads, GoWithDensityAndNumberOfWings) {
   const Design<double> d = tabulated(reference_design(), 11);
-  const Metrics<double> plain = flapping_orbit(d).metrics;
+  const Metrics<double> plain = steady_orbit(d).metrics;
   Design<double> stated = d;
   stated.aerodynamics.table_air_density = d.aerodynamics.air_density;
   stated.aerodynamics.table_wings = 2.0;
-  EXPECT_NEAR(flapping_orbit(stated).metrics[Metric::lift_mean] / plain[Metric::lift_mean], 1.0, 1e-12);
+  EXPECT_NEAR(steady_orbit(stated).metrics[Metric::lift_mean] / plain[Metric::lift_mean], 1.0, 1e-12);
   stated.aerodynamics.air_density *= 0.5;
   stated.aerodynamics.table_wings = 1.0;
   EXPECT_NEAR(resolve(stated).wings.tabulated.factor, 1.0, 1e-15);
@@ -165,7 +150,7 @@ TEST(TabulatedLoads, GoWithDensityAndNumberOfWings) {
 TEST(TabulatedLoads, AMotionBeyondTheTableIsOutsideTheDomain) {
   Design<double> d = tabulated(reference_design(), 11, 0.4);
   d.supply.voltage *= 2.0;
-  const SteadyFlapping fast = flapping_orbit(d);
+  const SteadyFlapping fast = steady_orbit(d);
   const auto evidence = domain_evidence(fast.record.vehicle(), fast.metrics);
   EXPECT_NE(describe(evidence).find("the flapping velocity reaches"), std::string::npos) << describe(evidence);
   EXPECT_NE(name_of(domain_of(fast.record.vehicle(), fast.metrics)).find("load_table"), std::string::npos);

@@ -119,7 +119,8 @@ TEST(ModelChoices, AChoiceAloneHasAllTheVariance) {
   known.study.design.supply.voltage = 3.0;
   for (Design<double>& d : known.study.combinations) d.supply.voltage = 3.0;
   known.study.count = 256;
-  const ToleranceOutput& f = *result_of(known.study).find("frequency_hz");
+  const ToleranceResult result = result_of(known.study);
+  const ToleranceOutput& f = *result.find("frequency_hz");
   EXPECT_NEAR(f.mean, 3.0 * (0.25 * known.factor[0] + 0.25 * known.factor[1] + 0.5 * known.factor[2]), 1e-6 * f.mean);
   EXPECT_NEAR(f.choices[0].difference, 3.0 * (known.factor[0] - known.factor[2]), 1e-6 * f.mean);
   EXPECT_NEAR(f.deviation_by_parameters, 0.0, 1e-6 * f.mean);
