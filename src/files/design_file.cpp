@@ -11,7 +11,7 @@
 
 #include "files/design_settings.hpp"
 #include "files/input_errors.hpp"
-#include "files/table_csv.hpp"
+#include "files/table_rows.hpp"
 #include "files/toml_reader.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/input_file.hpp"
@@ -34,18 +34,6 @@ std::string message_text(const std::string& file, int line, int column, const st
 constexpr std::string_view wave_coefficients[] = {"aerodynamics.coefficients.lift", "aerodynamics.coefficients.drag"};
 
 constexpr std::string_view centre_of_pressure_key = "aerodynamics.centre_of_pressure";
-
-constexpr CsvColumn chord_columns[] = {{"distance", "m"}, {"chord", "m"}};
-constexpr CsvColumn stroke_columns[] = {{"crank_angle", "rad"}, {"stroke_angle", "rad"}};
-constexpr CsvColumn discharge_columns[] = {{"charge", "1"}, {"voltage", "V"}};
-constexpr CsvColumn load_columns[] = {{"stroke_angle", "rad", true},
-                                      {"flapping_velocity", "rad/s"},
-                                      {"pitch_angle", "rad", true},
-                                      {"pitch_velocity", "rad/s", true},
-                                      {"lift", "N"},
-                                      {"stroke_moment", "N m"},
-                                      {"pitch_moment", "N m", true}};
-constexpr CsvColumn coefficient_columns[] = {{"alpha", "rad"}, {"cl", "1"}, {"cd", "1"}};
 
 class Reader {
  public:
@@ -343,7 +331,7 @@ class Reader {
           document_.locate(wave).refuse(std::string(wave), "give table, or lift and drag, not both");
         }
       }
-      const auto rows = read_table(*table, table_path, coefficient_columns);
+      const auto rows = table_rows(*table, table_path, coefficient_columns, load_table_);
       std::array<std::vector<double>, 3> columns;
       for (const auto& row : rows) {
         for (std::size_t n = 0; n < 3; ++n) columns[n].push_back(row[n]);
@@ -368,21 +356,18 @@ class Reader {
 
   /// The table of loads of aerodynamics.type = "tabulated".
   void read_loads(AerodynamicsDesign<double>& a) const {
-    const std::string type = load_table_key::type, in_place = load_table_key::rows;
-    const std::string path = document_.find(in_place) ? in_place : load_table_key::file;
-    const Value* const chosen = document_.find(type);
-    const Value* const value = document_.find(path);
-    if (!chosen || text_of(*chosen, type, "quasi-steady or tabulated") == "quasi-steady") return;
-    if (chosen->text != "tabulated") wrong(*chosen, type, "quasi-steady or tabulated");
-    if (!value) return missing(path, "\"loads.csv\", the name of a CSV file");
+    const Value* const type = document_.find(load_table_key::type);
+    const std::string_view types = "quasi-steady or tabulated";
+    if (!type || text_of(*type, load_table_key::type, types) == "quasi-steady") return;
+    if (type->text != "tabulated") wrong(*type, load_table_key::type, types);
+    const auto [value, path] = file_or_rows(load_table_key::file, load_table_key::rows, "rows of seven values");
+    if (!value) return missing(load_table_key::file, "\"loads.csv\", the name of a CSV file");
     for (const std::string_view other : {std::string_view("aerodynamics.coefficients"), centre_of_pressure_key}) {
       if (!document_.find(other) && !document_.has_section(other)) continue;
       document_.locate(other).refuse(std::string(other), "is not for tabulated loads, which come in its place");
     }
-    if (path != in_place) text_of(*value, path, "the name of a CSV file");
-    if (path == in_place && value->kind != TomlNode::Kind::array) wrong(*value, path, "rows of seven values");
     try {
-      a.load_table = std::make_shared<LoadTable>(read_table(*value, path, load_columns));
+      a.load_table = std::make_shared<LoadTable>(table_rows(*value, path, load_columns, load_table_));
     } catch (const ParameterError& error) {
       value->origin.refuse(path, error.reason());
     }
@@ -393,21 +378,18 @@ class Reader {
     const std::string_view path = "supply.discharge_curve";
     const Value* value = document_.find(path);
     if (!value) return;
-    for (const auto& row : read_table(*value, path, discharge_columns)) {
+    for (const auto& row : table_rows(*value, path, discharge_columns, load_table_)) {
       battery.discharge_curve.emplace_back(row[0], row[1]);
     }
     if (battery.discharge_curve.empty()) value->origin.refuse(std::string(path), "has no rows");
   }
 
   void read_stroke_table(StrokeTable<double>& table) const {
-    const std::string path = document_.find("transmission.file") ? "transmission.file" : "transmission.stroke_table";
-    const Value* value = document_.find(path);
+    const auto [value, path] =
+        file_or_rows("transmission.file", "transmission.stroke_table", "rows [crank angle, stroke angle]");
     if (!value) return;  // missing, which is among the errors already
-    const bool in_place = path == "transmission.stroke_table";
-    if (!in_place) text_of(*value, path, "the name of a CSV file");
-    if (in_place && value->kind != TomlNode::Kind::array) wrong(*value, path, "rows [crank angle, stroke angle]");
     std::vector<std::pair<double, double>> rows;
-    for (const auto& row : read_table(*value, path, stroke_columns)) rows.emplace_back(row[0], row[1]);
+    for (const auto& row : table_rows(*value, path, stroke_columns, load_table_)) rows.emplace_back(row[0], row[1]);
     try {
       table.curve = std::make_shared<StrokeCurve>(std::move(rows));
     } catch (const ParameterError& error) {
@@ -416,45 +398,27 @@ class Reader {
   }
 
   void read_chords(Planform<double>& planform) const {
-    const std::string_view path = document_.find("wing.planform.file") ? "wing.planform.file" : "wing.planform.chords";
-    const Value* found = document_.find(path);
-    if (!found) return;  // missing, which is among the errors already
-    const Value& value = *found;
-    const bool in_place = path == "wing.planform.chords";
-    if (!in_place) text_of(value, path, "the name of a CSV file");
-    if (in_place && value.kind != TomlNode::Kind::array) wrong(value, path, "rows [distance, chord]");
-    for (const auto& row : read_table(value, path, chord_columns)) planform.chord_table.emplace_back(row[0], row[1]);
+    const auto [value, path] = file_or_rows("wing.planform.file", "wing.planform.chords", "rows [distance, chord]");
+    if (!value) return;  // missing, which is among the errors already
+    for (const auto& row : table_rows(*value, path, chord_columns, load_table_)) {
+      planform.chord_table.emplace_back(row[0], row[1]);
+    }
   }
 
-  /// Rows of SI numbers from an array of rows in place, or from the CSV file of that name.
-  template <std::size_t N>
-  std::vector<std::array<double, N>> read_table(const Value& value, std::string_view path,
-                                                const CsvColumn (&columns)[N]) const {
-    std::vector<std::array<double, N>> rows;
-    if (value.kind == TomlNode::Kind::array) {
-      for (const TomlNode& row : value.items) {
-        const std::size_t number = rows.size() + 1;
-        if (row.kind != TomlNode::Kind::array || row.items.size() != N) {
-          value.origin.refuse(std::string(path), fmt::format("row {} must hold {} values", number, N));
-        }
-        std::array<double, N> numbers;
-        for (std::size_t n = 0; n < N; ++n) numbers[n] = number_of(value, row.items[n], path, columns[n].unit);
-        rows.push_back(numbers);
-      }
-      return rows;
+  /// A table that the key of a file gives, or that of rows in place: its value, null where neither is there, and its
+  /// key.
+  struct StatedTable {
+    const Value* value;
+    std::string path;
+  };
+  StatedTable file_or_rows(const char* file, const char* in_place, std::string_view rows) const {
+    if (const Value* const value = document_.find(file)) {
+      text_of(*value, file, "the name of a CSV file");
+      return {value, file};
     }
-    if (value.kind != TomlNode::Kind::text) wrong(value, path, "the name of a CSV file, or rows");
-    if (!load_table_) value.origin.refuse(std::string(path), "table files cannot be read here; give the rows in place");
-    try {
-      for (const auto& row : parse_csv(load_table_(value.text), one_line(value.text), columns)) {
-        std::array<double, N> numbers;
-        std::copy_n(row.begin(), N, numbers.begin());
-        rows.push_back(numbers);
-      }
-      return rows;
-    } catch (const std::runtime_error& error) {
-      value.origin.refuse(std::string(path), error.what());
-    }
+    const Value* const value = document_.find(in_place);
+    if (value && value->kind != TomlNode::Kind::array) wrong(*value, in_place, rows);
+    return {value, in_place};
   }
 
   void check(const Design<double>& d) const {
