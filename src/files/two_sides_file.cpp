@@ -68,7 +68,10 @@ VehicleFile vehicle_of(Document document, std::span<const std::string> overrides
   for (Design<double>* design : {&sides.left, &sides.right}) {
     design->motors = 1.0;
     design->mass.reset();
-    if (std::optional<double>& disc = design->aerodynamics.swept_area) *disc *= 0.5;  // stated of all wings
+    AerodynamicsDesign<double>& air = design->aerodynamics;
+    // Stated of all wings.
+    if (air.swept_area) *air.swept_area *= 0.5;
+    if (air.load_table && !air.table_wings) air.table_wings = whole.motors * whole.wing.count;
   }
   return {whole, std::move(sides)};
 }

@@ -62,6 +62,22 @@ TEST(TwoSidesFile, EachSideHasItsOwnNumbers) {
   EXPECT_EQ(left.supply.voltage, right.supply.voltage);
 }
 
+TEST(TwoSidesFile, ATableOfLoadsIsOfTheWingsOfBothSides) {
+  std::string text = plain_text();
+  const auto line = text.find("coefficients = ");
+  ASSERT_NE(line, std::string::npos);
+  text.replace(line, text.find('\n', line) - line,
+               "type = \"tabulated\"\nload_table = [[0, 0, -1, 0, 0, 0, 0], [0, 0, 1, 0, 0, 0, 0], "
+               "[0, 90, -1, 0, 0.1, 1e-3, 0], [0, 90, 1, 0, 0.1, 1e-3, 0]]");
+  const VehicleFile alike = parse_vehicle(text, "v.toml");
+  ASSERT_FALSE(alike.sides);
+  const VehicleFile file = parse_vehicle(text + "[left]\nmotor.armature_resistance = \"14 ohm\"\n", "v.toml");
+  ASSERT_TRUE(file.sides);
+  for (const Design<double>* side : {&file.sides->left, &file.sides->right}) {
+    EXPECT_DOUBLE_EQ(resolve(*side).wings.tabulated.factor, 0.5 * resolve(alike.design).wings.tabulated.factor);
+  }
+}
+
 TEST(TwoSidesFile, KeysMayBeDottedOrStandInSections) {
   const std::string forms[] = {"[left]\n\"motor.armature_resistance\" = \"14 ohm\"\n",
                                "[left]\nmotor.armature_resistance = \"14 ohm\"\n",
