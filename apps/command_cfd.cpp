@@ -239,9 +239,9 @@ void add_export_kinematics(CLI::App& program, Action& action) {
       "Example:\n"
       "  wingbeat export-kinematics friction2022 --frequency \"22 Hz\" -o wings.ini --format wabbit\n\n"
       "csv: angles, velocities, stroke acceleration over time and phase. wabbit: kinematics file of WABBIT and FLUSI.\n"
-      "pterasoftware: a Python script that sets wings and motion up and writes what compare-loads reads. load-table: a\n"
-      "grid that covers the motion, with the model's loads, as aerodynamics.type = \"tabulated\" reads it. docs/cfd.md\n"
-      "states the signs.\n\n"
+      "pterasoftware: a Python script that sets wings and motion up and writes what compare-loads reads.\n"
+      "load-table: a grid that covers the motion, with the model's loads, as aerodynamics.type = \"tabulated\"\n"
+      "reads it. docs/cfd.md states the signs.\n\n"
       "Exit status: 0 done, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
   act_at_operating_point(command, action, a, run);
 }

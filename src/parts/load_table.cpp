@@ -27,6 +27,9 @@ constexpr std::array<Column, LoadTable::columns> named = {{{"stroke_angle", "rad
 [[noreturn]] void refuse(const std::string& reason) { throw ParameterError(load_table_key::file, reason); }
 
 constexpr std::size_t velocity_column = std::size_t(LoadCoordinate::flapping_velocity);
+constexpr std::size_t turn_column = std::size_t(LoadCoordinate::pitch_velocity);
+constexpr std::size_t lift_column = load_coordinate_count, stroke_moment_column = lift_column + 1;
+constexpr std::size_t pitch_moment_column = lift_column + 2;
 
 /// A place of the grid in words: "flapping_velocity = 20 rad/s, pitch_angle = 0.5 rad".
 std::string place_of(const std::vector<LoadTable::Axis>& axes, const LoadTable::Row& row) {
@@ -55,7 +58,7 @@ std::vector<LoadTable::Row> with_mirror_images(std::vector<LoadTable::Row> rows)
   for (std::size_t n = 0; n < count; ++n) {
     LoadTable::Row image = rows[n];
     for (std::size_t k = velocity_column; k < LoadTable::columns; ++k) {
-      if (k != load_coordinate_count && image[k] != 0.0) image[k] = -image[k];  // the lift is the same
+      if (k != lift_column && image[k] != 0.0) image[k] = -image[k];
     }
     rows.push_back(image);
   }
@@ -92,10 +95,10 @@ std::vector<double> monotone_slopes(const std::vector<double>& x, const std::vec
 LoadTable::LoadTable(const std::vector<Row>& stated) {
   if (stated.empty()) refuse("the load table has no rows");
   check_numbers(stated);
-  for (const std::size_t k : {velocity_column, load_coordinate_count, load_coordinate_count + 1}) {
+  for (const std::size_t k : {velocity_column, lift_column, stroke_moment_column}) {
     if (std::isnan(stated.front()[k])) refuse(detail::format("the load table needs a column %s", named[k].name));
   }
-  has_pitch_moment_ = !std::isnan(stated.front()[columns - 1]);
+  has_pitch_moment_ = !std::isnan(stated.front()[pitch_moment_column]);
   std::vector<Row> rows = stated;
   for (Row& row : rows) {
     for (double& x : row) x = std::isnan(x) ? 0.0 : x + 0.0;  // no negative zero
@@ -160,7 +163,7 @@ LoadTable::LoadTable(const std::vector<Row>& stated) {
                             place_of(axes_, rows[n]).c_str()));
     }
     for (std::size_t q = 0; q < table_load_count; ++q) {
-      values_[node << axes_.size()][q] += rows[n][load_coordinate_count + q] / allowed;
+      values_[node << axes_.size()][q] += rows[n][lift_column + q] / allowed;
     }
   }
   const std::vector<Row> grid = this->rows();
@@ -183,7 +186,7 @@ std::vector<LoadTable::Row> LoadTable::rows() const {
   for (std::size_t node = 0; node < rows.size(); ++node) {
     for (const Axis& a : axes_) rows[node][std::size_t(a.coordinate)] = a.knots[node / a.stride % a.knots.size()];
     for (std::size_t q = 0; q < table_load_count; ++q) {
-      rows[node][load_coordinate_count + q] = values_[node << axes_.size()][q];
+      rows[node][lift_column + q] = values_[node << axes_.size()][q];
     }
   }
   return rows;
@@ -193,11 +196,11 @@ std::vector<LoadTable::Row> LoadTable::rows() const {
 void LoadTable::check_rest() const {
   constexpr double rounding = 1e-6;
   const std::vector<Row> grid = rows();
-  for (std::size_t q = load_coordinate_count; q < columns; ++q) {
+  for (std::size_t q = lift_column; q < columns; ++q) {
     double largest = 0.0;
     for (const Row& row : grid) largest = std::max(largest, std::abs(row[q]));
     for (const Row& row : grid) {
-      const bool rests = row[velocity_column] == 0.0 && row[std::size_t(LoadCoordinate::pitch_velocity)] == 0.0;
+      const bool rests = row[velocity_column] == 0.0 && row[turn_column] == 0.0;
       if (!rests || std::abs(row[q]) <= rounding * largest) continue;
       refuse(detail::format("the load table has a %s of %g %s for wings at rest, at %s; loads of still air are 0 there",
                             named[q].name, row[q], named[q].unit, place_of(axes_, row).c_str()));

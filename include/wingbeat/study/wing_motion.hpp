@@ -36,8 +36,8 @@ WingInstant wing_instant(const CycleRecord& cycle, double share);
 std::vector<WingInstant> wing_motion(const CycleRecord& cycle, int count);
 
 /// The loads of a vehicle's wings at a stated motion, by the functions of the equations of motion. Without `pitch` the
-/// wings follow the pitch law. Throws ParameterError for wings that twist, that clap or are
-/// in a wake, which follow from a settled cycle, and without `pitch` for wings on hinges.
+/// wings follow the pitch law. Throws ParameterError for wings that twist, for those that clap or are in a wake, which
+/// follow from a settled cycle, and without `pitch` for wings on hinges.
 AirLoads air_loads(const Vehicle<double>& vehicle, const AngleMotion& stroke, const AngleMotion* pitch);
 
 /// An angle over a cycle as a Fourier series, \f$\bar x + \sum_k a_k \cos 2 \pi k t + b_k \sin 2 \pi k t\f$, t in
