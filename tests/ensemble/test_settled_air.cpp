@@ -4,9 +4,11 @@
 
 #include <random>
 
+#include "parts/expect_error.hpp"
 #include "vehicle/direct_design.hpp"
 #include "vehicle/hinged_design.hpp"
 #include "vehicle/metrics_apart.hpp"
+#include "vehicle/orbit_and_simulation.hpp"
 #include "vehicle/orbit_derivatives.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/steady_orbit.hpp"
@@ -102,9 +104,7 @@ TEST(SettledAir, OrbitsAgreeWithTheSimulationInTime) {
                                 axis,
                                 clapping(hinged, meeting_angle_of(hinged))};
   for (const Design<double>& d : all) {
-    const std::ptrdiff_t n = &d - all;
-    const SteadyFlapping orbit = steady_orbit(d, 1e-8);
-    expect_as_in_time(orbit, d, n);
+    EXPECT_TRUE(expect_orbit_as_simulated(d, int(&d - all)).flaps);
   }
 }
 
@@ -194,14 +194,7 @@ TEST(ClapAndFling, NeedsWingsThatComeClose) {
 }
 
 TEST(AirOfStrips, IsRefusedWhereItMakesNoSense) {
-  const auto refusal = [](const Design<double>& d) -> std::string {
-    try {
-      validate(d);
-    } catch (const ParameterError& error) {
-      return error.what();
-    }
-    return "accepted";
-  };
+  const auto refusal = [](const Design<double>& d) { return error_of([&] { validate(d); }); };
   Design<double> d = in_its_wake(reference_design());
   EXPECT_EQ(refusal(d), "aerodynamics.induced_velocity: needs the wing's outline: give a planform with a shape");
   d = with_outline(reference_design());

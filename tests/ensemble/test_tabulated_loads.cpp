@@ -8,15 +8,15 @@
 #include <memory>
 #include <vector>
 
+#include "parts/expect_error.hpp"
 #include "vehicle/direct_design.hpp"
 #include "vehicle/hinged_design.hpp"
+#include "vehicle/orbit_and_simulation.hpp"
 #include "vehicle/orbit_derivatives.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/steady_orbit.hpp"
 #include "wingbeat/cycle/domain.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
-#include "wingbeat/ensemble/ensemble.hpp"
-#include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/parts/coefficient_sets.hpp"
 
 namespace wingbeat {
@@ -96,22 +96,13 @@ TEST(TabulatedLoads, OrbitsAgreeWithTheSimulationInTime) {
     const std::ptrdiff_t n = &d - all;
     const SteadyFlapping orbit = steady_orbit(d, 1e-8);
     EXPECT_EQ(name_of(domain_of(orbit.record.vehicle(), orbit.metrics)), "inside") << n;
-    expect_as_in_time(orbit, d, n);
+    EXPECT_TRUE(expect_orbit_as_simulated(d, int(n)).flaps);
   }
 }
 
 TEST(TabulatedLoads, BatchesLeaveThemToTheScalarSolver) {
-  const Design<double> d = tabulated(reference_design(), 11);
-  const std::vector<EnsembleMember> members(3, EnsembleMember{resolve(d), {}});
-  std::vector<EnsembleOutcome> found(members.size());
-  EnsembleOptions options;
-  options.tolerance = 1e-7;
-  solve_ensemble(members, options, start_up_in_time(), found);
-  const Metrics<double> alone = steady_orbit(d).metrics;
-  for (const EnsembleOutcome& o : found) {
-    EXPECT_TRUE(o.scalar);
-    EXPECT_NEAR(o.metrics[Metric::lift_mean] / alone[Metric::lift_mean], 1.0, 1e-6);
-  }
+  expect_left_to_scalar_solver(tabulated(reference_design(), 11),
+                               {Metric::lift_mean, Metric::power_electrical, Metric::frequency});
 }
 
 TEST(TabulatedLoads, DerivativesAreThoseOfDifferences) {
@@ -157,14 +148,7 @@ TEST(TabulatedLoads, AMotionBeyondTheTableIsOutsideTheDomain) {
 }
 
 TEST(TabulatedLoads, AreRefusedWhereTheyMakeNoSense) {
-  const auto refusal = [](const Design<double>& d) -> std::string {
-    try {
-      validate(d);
-    } catch (const ParameterError& error) {
-      return error.what();
-    }
-    return "accepted";
-  };
+  const auto refusal = [](const Design<double>& d) { return error_of([&] { validate(d); }); };
   const auto table = tabulated(hinged(), 5).aerodynamics.load_table;
   Design<double> d = reference_design();
   d.aerodynamics.table_wings = 2.0;

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "vehicle/metrics_apart.hpp"
+#include "wingbeat/cycle/air_equilibrium.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
@@ -15,7 +16,7 @@
 
 namespace wingbeat {
 
-/// The orbit to 1e-8 and the start-up to 1e-7.
+/// The orbit to 1e-8 and the start-up to 1e-7, in the air that settles around the orbit.
 struct OrbitAndSimulation {
   SteadyFlapping orbit;
   TransientResult time;
@@ -24,7 +25,9 @@ struct OrbitAndSimulation {
 inline OrbitAndSimulation orbit_and_simulation(const Vehicle<double>& vehicle) {
   TransientOptions options;
   options.tolerance = 1e-7;
-  return {find_steady_flapping(vehicle, {.tolerance = 1e-8}, start_up_in_time()), simulate_start_up(vehicle, options)};
+  OrbitAndSimulation found{find_steady_flapping(vehicle, {.tolerance = 1e-8}, start_up_in_time()), {}};
+  found.time = simulate_start_up(in_air(vehicle, air_of(found.orbit.metrics)), options);
+  return found;
 }
 
 /// What a comparison saw.
@@ -55,7 +58,7 @@ inline Compared expect_orbit_as_simulated(const Design<double>& design, int n) {
   return seen;
 }
 
-/// Packs leave wings on hinges to the scalar solver, whose metrics are the outcome's to the bit.
+/// Packs leave the design to the scalar solver, whose metrics are the outcome's to the bit.
 inline void expect_left_to_scalar_solver(const Design<double>& design, std::initializer_list<Metric> metrics) {
   const Vehicle<double> v = resolve(design);
   const EnsembleMember member{v, {}};
