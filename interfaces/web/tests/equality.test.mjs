@@ -64,25 +64,28 @@ function scaleOf(key, report, resistance) {
   return key === 'floquet_multiplier_max' ? 1 : 0;
 }
 
-/** Times that end where a search along a flight does: to the tolerance of the orbits on its way, 1e-6. */
-const searched = ['hover_s', 'endurance_s'];
+/**
+ * Times that a search along a flight ends, and to what: a thousandth of the tolerance of its orbits, 1e-6, on either
+ * side (Flight in src/study/endurance.cpp).
+ */
+const searched = ['hover_s', 'endurance_s'],
+  resolution = 2e-9;
 
 /**
- * The largest relative difference of the numbers, after asserting that all else is equal; of those in `keys`, or of all
- * but the searched ones.
+ * The largest relative difference of the numbers, after asserting that all else is equal; of those `which` takes.
  */
-function compare({report: ours, resistance}, {report: theirs}, what, keys) {
+function compare({report: ours, resistance}, {report: theirs}, what, which = () => true) {
   assert.deepEqual(Object.keys(ours), Object.keys(theirs), what);
   const idle = Math.abs(theirs.power_electrical_w) < 1e-12 * scaleOf('power_', theirs, resistance);
   let largest = 0;
   for (const [key, value] of Object.entries(theirs)) {
     // Sentences hold rounded numbers. Where the input power is rounding, so is the efficiency that the domain assesses.
     if (['status_detail', 'domain_detail', 'warnings'].includes(key) || (key === 'domain' && idle)) continue;
-    if (keys ? !keys.includes(key) : searched.includes(key) && typeof value === 'number') continue;
     if (typeof value !== 'number' || typeof ours[key] !== 'number') {
       assert.deepEqual(ours[key], value, `${what}: ${key}`);
       continue;
     }
+    if (!which(key)) continue;
     const size = Math.max(Math.abs(value), scaleOf(key, theirs, resistance));
     if (size > 0) largest = Math.max(largest, Math.abs(ours[key] - value) / size);
   }
@@ -106,10 +109,11 @@ test('500 designs: statuses are equal, metrics to 1e-12', {timeout: 900_000}, as
     const status = theirs[n].report ? theirs[n].report.status : 'refused';
     statuses[status] = (statuses[status] ?? 0) + 1;
     if (!theirs[n].report) return;
-    flights = Math.max(flights, compare(ours[n], theirs[n], what, searched));
-    const difference = compare(ours[n], theirs[n], what);
+    const flight = compare(ours[n], theirs[n], what, (key) => searched.includes(key));
+    flights = Math.max(flights, flight);
+    const difference = compare(ours[n], theirs[n], what, (key) => !searched.includes(key));
     largest = Math.max(largest, difference);
-    if (difference <= 1e-12) ++near;
+    if (difference <= 1e-12 && flight <= resolution) ++near;
     else far.push(`${difference.toExponential(1)} ${what}`);
   });
   console.log(
@@ -119,8 +123,7 @@ test('500 designs: statuses are equal, metrics to 1e-12', {timeout: 900_000}, as
   assert.ok(statuses.locked > 0 && statuses.stalled > 0, 'designs that do not flap are among them');
   // An orbit that is searched for from where the motion in time has come to depends on who integrated that, within the
   // tolerance of the search, 1e-6.
-  assert.ok(far.length <= 5 && largest < 1e-8, far.join('\n'));
-  assert.ok(flights < 1e-8, `times of flight differ by ${flights}`);
+  assert.ok(far.length <= 5 && Math.max(largest, flights) < 1e-8, far.join('\n'));
 });
 
 test('quantities in many spellings', async () => {
