@@ -36,7 +36,9 @@ Design<double> read_alike(const OperatingPointArguments& arguments, RunOptions& 
                    "this takes no vehicle whose sides differ; wingbeat run and wingbeat linearise do");
 }
 
-constexpr int csv_rows = 361, grid_values = 17, series_steps = 1024, harmonics_max = 40;
+/// Of wings on hinges the rows grow with the cube of the values.
+constexpr int grid_values = 17, grid_values_max = 101;
+constexpr int csv_rows = 361, series_steps = 1024, harmonics_max = 40;
 constexpr double series_error = 0.01 / degrees_per_radian;  ///< [rad]
 
 /// A vehicle at its operating point.
@@ -97,6 +99,11 @@ int run(const ExportKinematicsArguments& arguments) {
   }
   if (arguments.loads && format != KinematicsFormat::csv) {
     throw InputError("--loads", 0, 0, "", "only a csv file has loads; use --format csv");
+  }
+  if (table && arguments.rows > grid_values_max) {
+    throw InputError(
+        "--rows", 0, 0, "",
+        fmt::format("a load-table has at most {} flapping velocities, got {}", grid_values_max, arguments.rows));
   }
   RunOptions options;
   const Design<double> design = read_alike(arguments.operating_point, options);
@@ -224,7 +231,7 @@ void add_export_kinematics(CLI::App& program, Action& action) {
                                "FORMAT");
   command
       ->add_option("--rows", a->rows,
-                   "Instants of a csv file, both ends included (default 361); flapping velocities of a load-table (17)")
+                   "Instants of a csv file (default 361), or flapping velocities of a load-table (default 17)")
       ->check(CLI::Range(3, 100000))
       ->type_name("NUMBER");
   command

@@ -55,6 +55,12 @@ TEST_F(LoadTable, GridOfWingsOnHinges) {
   }
 }
 
+TEST_F(LoadTable, AGridThatGrowsTooLargeIsRefused) {
+  const Outcome out = run({"export-kinematics", plain, "--format", "load-table", "--rows", "102", "-o", path("g.csv")});
+  EXPECT_EQ(out.status, 2);
+  EXPECT_THAT(out.err, HasSubstr("--rows: a load-table has at most 101 flapping velocities, got 102"));
+}
+
 TEST_F(LoadTable, HalfOfTheWingsIsHalfOfTheTable) {
   const std::string flapper = data + "/loads/flapper.toml";
   const Outcome whole = run({"run", flapper, "--json"});
