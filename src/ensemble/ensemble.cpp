@@ -43,6 +43,7 @@ PackSolver solver_for(InstructionSet isa) {
 /// Whether the batched solver knows all of a vehicle.
 bool suits_packs(const Vehicle<double>& v) {
   if (pitches(v) || is_of_further_kind(v) || claps(v.wings.clap) || is_given(v.wings.tabulated)) return false;
+  if (has_flow(v.wings)) return false;
   // Strips in the wake meet a table's start or a stop at an angle of attack each.
   if (has_wake(v.wings) && (v.wings.coefficients.table || has_pitch_stop(v.wings))) return false;
   if (v.load_torque != 0.0 || v.voltage_offset != 0.0 || v.electronics.efficiency != 1.0) return false;

@@ -73,6 +73,7 @@ class Reader {
     });
     attempt([&] { read_flag("wing.planform.scale_inertia", d.wing.scale_inertia); });
     attempt([&] { read_flag("electronics.regeneration", d.electronics.regenerates); });
+    attempt([&] { read_flag("body.opposed", d.body.opposed); });
     attempt([&] {
       if (document_.find("supply.throttle")) d.supply.throttle = choice<Throttle>("supply.throttle");
     });
@@ -83,7 +84,8 @@ class Reader {
     for (const auto& [section, key] :
          {std::pair("pitch", pitch_key::stiffness), std::pair("wing.torsion", torsion_key::stiffness),
           std::pair("piezo", piezo_key::force_per_volt), std::pair("electronics", electronics_key::efficiency),
-          std::pair("aerodynamics.clap_and_fling", clap_and_fling_key::amplitude)}) {
+          std::pair("aerodynamics.clap_and_fling", clap_and_fling_key::amplitude),
+          std::pair("body", body_key::inertia_pitch)}) {
       attempt([&, s = section, k = key] {
         if (document_.has_section(s) && !document_.find(k.path)) missing(k.path, quantity_example(k.unit));
       });

@@ -15,25 +15,39 @@ namespace wingbeat::detail {
 /// Watches a model: nothing to see.
 struct NoWatch {
   /// Before and after the model is changed other than by integrating.
-  void changing(const TimeModel&) {}
-  void changed(const TimeModel&) {}
+  template <class Model>
+  void changing(const Model&) {}
+  template <class Model>
+  void changed(const Model&) {}
   /// The time to which the next piece may go, of one that begins and would end at `stop` [s]; no time ahead: it is not
   /// integrated.
-  double piece_end(const TimeModel&, double stop) { return stop; }
+  template <class Model>
+  double piece_end(const Model&, double stop) {
+    return stop;
+  }
   /// Before what happens at the end of a step from the time `from` [s] to where the model stands: a moment within it to
   /// stop at, of which nothing behind it has happened.
-  std::optional<double> stepped(const TimeModel&, Integrator&, double /*from*/) { return std::nullopt; }
+  template <class Model>
+  std::optional<double> stepped(const Model&, Integrator&, double /*from*/) {
+    return std::nullopt;
+  }
   /// Of the model as it stands; true stops it there.
-  bool happened(const TimeModel&, TransientEvent::Kind) { return false; }
+  template <class Model>
+  bool happened(const Model&, TransientEvent::Kind) {
+    return false;
+  }
   /// After a step and what has happened at its end; true stops it there. `plain`: nothing has.
-  bool enough(const TimeModel&, bool /*plain*/) { return false; }
+  template <class Model>
+  bool enough(const Model&, bool /*plain*/) {
+    return false;
+  }
 };
 
 /// reached: the end of the piece; event: one that ended it before, a jam among them; stopped: by what watches.
 enum class PieceOutcome { reached, event, stopped, not_started, failed };
 
-/// The model, a TimeModel or what is derived from it, goes on by one smooth piece: at most to the time `until` [s].
-/// integrator() gives what integrates it.
+/// The model, a TimeModel, what is derived from it, or a FlightModel, goes on by one smooth piece: at most to the time
+/// `until` [s]. integrator() gives what integrates it.
 template <class Model, class Watch, class MakeIntegrator>
 PieceOutcome pass_piece(Model& model, double until, Watch& watch, const MakeIntegrator& integrator) {
   using Kind = TransientEvent::Kind;
@@ -115,7 +129,7 @@ StepOutcome step_to(Model& model, double until, double tolerance, TimeIntegrator
   constexpr int max_pieces = 1000000;
   std::unique_ptr<Integrator> steps;
   const auto integrator = [&]() -> Integrator& {
-    steps = make_integrator(which, problem_of(model, tolerance));
+    steps = integrator_for(which, model, tolerance);
     return *steps;
   };
   for (int piece = 0; model.now.t < until; ++piece) {

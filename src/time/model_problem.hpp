@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory>
 
 #include "time/integrator.hpp"
 #include "time/time_model.hpp"
@@ -13,10 +14,11 @@ namespace wingbeat::detail {
 
 /// The model's unknowns, all its indicators being roots. `relative`: admissible error of a step. Model and tolerance
 /// are referred to and may change between steps.
-inline IntegratorProblem problem_of(const TimeModel& model, const double& relative) {
+template <class Model>
+IntegratorProblem problem_of(const Model& model, const double& relative) {
   IntegratorProblem p;
   p.size = p.coupled = model.coupled;
-  p.roots = int(TimeModel::indicator_count);
+  p.roots = int(Model::indicator_count);
   p.stiff = model.stiff();
   p.rates = [&](double t, const double* y, double* dy) { return model.rates(t, y, dy, false); };
   p.root_functions = [&](double t, const double* y, double* values) {
@@ -28,6 +30,11 @@ inline IntegratorProblem problem_of(const TimeModel& model, const double& relati
   const auto typical = model.typical();
   p.typical.assign(typical.begin(), typical.end());
   return p;
+}
+
+template <class Model>
+std::unique_ptr<Integrator> integrator_for(TimeIntegrator which, const Model& model, const double& relative) {
+  return make_integrator(which, problem_of(model, relative));
 }
 
 /// Adds `quadratures` behind the unknowns, which are of the sizes `scale`; the rates are to be those with them.

@@ -210,6 +210,40 @@ void validate_load_table(const Design<double>& d) {
   }
 }
 
+/// A body needs a mass, all its moments of inertia, wings on both sides and an outline by whose strips they fly.
+void validate_body(const Design<double>& d) {
+  const BodyDesign<double>& b = d.body;
+  if (!b.inertia_pitch) return;
+  for (const auto& [given, key] : {std::pair{b.inertia_roll.has_value(), body_key::inertia_roll.path},
+                                   {b.inertia_yaw.has_value(), body_key::inertia_yaw.path}}) {
+    if (!given) throw ParameterError(key, "missing: a body has the three moments of inertia");
+  }
+  if (!d.mass) throw ParameterError("vehicle.mass", "missing: a body has a mass");
+  const double I_x = *b.inertia_roll, I_y = *b.inertia_pitch, I_z = *b.inertia_yaw;
+  if (!(square(b.inertia_product) < I_x * I_z)) {
+    throw ParameterError(
+        body_key::inertia_product.path,
+        detail::format("must be smaller in size than sqrt(I_xx I_zz), %.4g kg m2", std::sqrt(I_x * I_z)));
+  }
+  if (b.inertia_product == 0.0 && !(I_x + I_y >= I_z && I_y + I_z >= I_x && I_z + I_x >= I_y)) {
+    throw ParameterError(body_key::inertia_pitch.path,
+                         "no body has these three moments of inertia: one is larger than the sum of the others");
+  }
+  if (b.wing_mass && !(b.wing_centre > 0.0)) {
+    throw ParameterError(body_key::wing_centre.path, "missing: with wing_mass the distance of its centre of mass");
+  }
+  const double wings = d.motors * d.wing.count;
+  if (!(d.motors == 1.0 || d.motors == 2.0) || !(wings == 2.0 || wings == 4.0)) {
+    throw ParameterError("wing.count",
+                         detail::format("a body carries two or four wings, driven by one motor, or by one "
+                                        "on either side; there are %g wings of %g motors",
+                                        wings, d.motors));
+  }
+  if (b.opposed && wings != 4.0) {
+    throw ParameterError("body.opposed", "is of four wings, two on either side");
+  }
+}
+
 /// A moment of inertia that is stated grows with the scale or does not; one that follows has no choice.
 void validate_scale(const WingDesign<double>& wing) {
   if (wing.scale_inertia || !(wing.areal_density || wing.resonance)) return;
@@ -335,6 +369,7 @@ void validate(const Design<double>& d) {
   validate_angle_of_attack(air);
   validate_air_of_strips(d);
   validate_load_table(d);
+  validate_body(d);
   validate_scale(d.wing);
 
   const Vehicle<double> v = resolve(with_any_pitch_coefficient(d));

@@ -113,6 +113,22 @@ struct ClapGiven {
   static constexpr std::string_view text = "aerodynamics.clap_and_fling.amplitude";
   static constexpr bool holds(const auto& d) { return d.aerodynamics.clap.amplitude.has_value(); }
 };
+struct BodyGiven {
+  static constexpr std::string_view text = "body.inertia_pitch";
+  static constexpr bool holds(const auto& d) { return d.body.inertia_pitch.has_value(); }
+};
+struct WingMassGiven {
+  static constexpr std::string_view text = "body.wing_mass";
+  static constexpr bool holds(const auto& d) { return d.body.wing_mass.has_value(); }
+};
+struct TailGiven {
+  static constexpr std::string_view text = "body.tail.area";
+  static constexpr bool holds(const auto& d) { return d.body.tail.area.has_value(); }
+};
+struct FinGiven {
+  static constexpr std::string_view text = "body.fin.area";
+  static constexpr bool holds(const auto& d) { return d.body.fin.area.has_value(); }
+};
 struct LoadsTabulated {
   static constexpr std::string_view text = "aerodynamics.type = tabulated";
   static constexpr bool holds(const auto& d) { return d.aerodynamics.load_table != nullptr; }

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 
+#include "vehicle/body_rows.hpp"
 #include "vehicle/drive_rows.hpp"
 #include "vehicle/parameter_access.hpp"
 #include "wingbeat/parts/any_transmission.hpp"
@@ -455,7 +456,8 @@ constexpr auto wing_rows() {
 
 template <Scalar S>
 std::span<const Parameter<S>> parameter_table() {
-  static constexpr auto parameters = detail::joined(detail::drive_rows<S>(), detail::wing_rows<S>());
+  static constexpr auto parameters =
+      detail::joined(detail::joined(detail::drive_rows<S>(), detail::wing_rows<S>()), detail::body_rows<S>());
   return parameters;
 }
 

@@ -9,6 +9,7 @@
 #include "wingbeat/core/members.hpp"
 #include "wingbeat/core/names.hpp"
 #include "wingbeat/parts/blade_element.hpp"
+#include "wingbeat/parts/body.hpp"
 #include "wingbeat/parts/electronics.hpp"
 #include "wingbeat/parts/friction.hpp"
 #include "wingbeat/parts/motor.hpp"
@@ -292,12 +293,13 @@ struct Design {
   AerodynamicsDesign<S> aerodynamics;
   ElectronicsDesign<S> electronics = {};
   PiezoDesign<S> piezo = {};
+  BodyDesign<S> body = {};
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.name, self.mass, self.motors, self.masses, self.bench_torque_constant, self.supply,
                self.supply_resonance_ratio, self.motor, self.transmission, self.friction, self.spring, self.wing,
-               self.pitch, self.aerodynamics, self.electronics, self.piezo);
+               self.pitch, self.aerodynamics, self.electronics, self.piezo, self.body);
   }
 };
 

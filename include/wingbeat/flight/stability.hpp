@@ -1,0 +1,74 @@
+// Small motions about steady flight: linear models and modes by averaging over the wingbeat, and by Floquet theory of
+// the whole periodic flight; model.md section 18.
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <complex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "wingbeat/flight/trim.hpp"
+
+namespace wingbeat {
+
+/// u, v, w [m/s], p, q, r [rad/s], roll and pitch [rad]; position and heading follow from them and act on nothing.
+inline constexpr std::size_t flight_state_count = 8;
+inline constexpr std::array<const char*, flight_state_count> flight_state_names = {
+    "u_m_per_s", "v_m_per_s", "w_m_per_s", "p_rad_per_s", "q_rad_per_s", "r_rad_per_s", "roll_rad", "pitch_rad"};
+using FlightVector = Eigen::Matrix<double, 8, 1>;
+using FlightMatrix = Eigen::Matrix<double, 8, 8>;
+
+/// Of the states about trim: x' = A x + B u.
+struct FlightLinearModel {
+  FlightMatrix A = FlightMatrix::Zero();
+  Eigen::MatrixXd B;                    ///< a column for each of `controls`
+  std::vector<FlightControl> controls;  ///< those that the vehicle has
+};
+
+/// A number of modes is reported in pairs of which one is given.
+struct FlightMode {
+  std::complex<double> averaged;                ///< [1/s]
+  std::optional<std::complex<double>> floquet;  ///< [1/s]; the logarithm of the multiplier over the period
+  std::string shape;                            ///< names of the largest states of the averaged mode
+  bool longitudinal = false;
+
+  static double doubling_time(std::complex<double> s) { return std::log(2.0) / s.real(); }  ///< < 0: halves
+  static double period(std::complex<double> s) { return two_pi / std::abs(s.imag()); }
+};
+
+/// The whole flight that repeats with the wingbeat at the controls of a trim.
+struct PeriodicFlight {
+  double period = 0.0;  ///< [s]
+  FlightVector mean;    ///< of the states over the period
+  std::vector<std::complex<double>> multipliers;
+  double mismatch = 0.0;
+};
+
+struct StabilityResult {
+  TrimResult trim;
+  std::optional<FlightLinearModel> model;
+  std::vector<FlightMode> modes;  ///< the least stable first
+  std::optional<PeriodicFlight> periodic;
+  std::string periodic_detail;  ///< why there is no periodic flight
+};
+
+/// The averaged linear model about a trim that has a flight; none where the vehicle does not flap beside it.
+std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const TrimResult& at);
+
+/// Modes by both ways.
+StabilityResult flight_stability(AveragedFlight& flight, const TrimResult& at);
+
+/// Of the eigenvalue with the largest real part.
+struct ModeSensitivity {
+  std::string parameter;
+  double value = 0.0;               ///< [SI]
+  std::complex<double> eigenvalue;  ///< with the parameter 1 % larger, trimmed anew [1/s]
+  double slope = 0.0;               ///< change of the real part over the relative change of the parameter [1/s]
+};
+/// Central differences over +-0.5 % of every parameter that is not zero, each vehicle trimmed anew.
+std::vector<ModeSensitivity> mode_sensitivities(const Design<double>& design, const FlightCondition& condition,
+                                                const TrimOptions& options = {});
+
+}  // namespace wingbeat
