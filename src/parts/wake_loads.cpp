@@ -1,5 +1,5 @@
-// The strips of wings in their wake, on SIMD lanes of the oldest processor of its kind: for a scalar solver, which
-// would sum sixteen strips one after the other.
+// The strips of wings in their wake, and on a body that moves, on SIMD lanes of the oldest processor of its kind: for a
+// scalar solver, which would sum sixteen strips one after the other.
 #include <array>
 #include <cstddef>
 
@@ -56,6 +56,24 @@ LiftAndDrag<double> detail::strips_in_wake(const BladeElement<double>& w, double
                       share, sum);
   }
   return {sum_of_lanes(sum.lift), sum_of_lanes(sum.drag)};
+}
+
+MountLoads<double> detail::strips_of_mount(const ForceCoefficients<double>& of_wing,
+                                           const InducedVelocity<double>& wake, const StripDrift<double>& drift,
+                                           const MountMotion<double>& motion) {
+  const ForceCoefficients<StripLanes> coefficients = cast<StripLanes>(of_wing);
+  const StripLanes u0(drift.u0), u1(motion.velocity + drift.u1), w0(drift.w0 - wake.velocity), w1(drift.w1);
+  const StripLanes sin_psi(motion.sin_psi), cos_psi(motion.cos_psi), stroke(motion.stroke), scale(motion.scale);
+  const StripLanes along_the_flow(motion.along_the_flow), clap(motion.clap);
+  MountLoads<StripLanes> sum{StripLanes(0.0), StripLanes(0.0), StripLanes(0.0), StripLanes(0.0)};
+  for (std::size_t n = 0; n < wake_strip_count; n += strip_lanes) {
+    const WakeStrip<StripLanes> strip{gathered_strips(wake.strips, n, &WakeStrip<double>::radius),
+                                      gathered_strips(wake.strips, n, &WakeStrip<double>::area), StripLanes(0.0)};
+    add_strip_of_mount(coefficients, scale, strip, StripLanes(u0 + u1 * strip.radius),
+                       StripLanes(w0 + w1 * strip.radius), sin_psi, cos_psi, stroke, along_the_flow, clap, sum);
+  }
+  return {sum_of_lanes(sum.ahead), sum_of_lanes(sum.down), sum_of_lanes(sum.ahead_by_radius),
+          sum_of_lanes(sum.down_by_radius)};
 }
 
 }  // namespace wingbeat

@@ -99,27 +99,23 @@ StripDrift<S> strip_drift(const OnsetFlow& flow, const WingMount& mount, const W
 template <Scalar S>
 using OnsetFlowOf = std::conditional_t<ScalarTraits<S>::reads_tables, std::shared_ptr<const OnsetFlow>, std::nullptr_t>;
 
-/// Forces of the air on a strip over \f$\tfrac12 \rho\, c\,\mathrm{d}r\f$ [m2/s2] along e_t and n, and what the pitch
-/// axis feels.
-template <Scalar S>
-struct StripLoads {
-  S ahead, down;
-  S pitch_moment = S(0.0);  ///< over the chord, against a positive pitch [m2/s2]
-};
-
-/// The air at a strip whose chord hangs down turned ahead by the pitch \f$\psi\f$: with the velocity (u, w) of the
-/// strip along e_t and n, \f$v_\mathrm{n} = u \cos\psi - w \sin\psi\f$ normal to the chord and
-/// \f$v_\mathrm{c} = u \sin\psi + w \cos\psi\f$ along it towards the trailing edge, and the sign s of the stroke
-/// velocity of the wing:
+/// The angle of attack [rad] of a strip whose chord hangs down turned ahead by the pitch \f$\psi\f$: with its velocity
+/// (u, w) against the air along e_t and n, of the size U > 0, \f$v_\mathrm{n} = u \cos\psi - w \sin\psi\f$ normal to
+/// the chord and \f$v_\mathrm{c} = u \sin\psi + w \cos\psi\f$ along it towards the trailing edge, and the sign s of the
+/// stroke velocity of the wing:
 /// \f[
 /// \alpha = \operatorname{atan2}(s\, v_\mathrm{n}, -v_\mathrm{c})
 /// \f]
-/// Where the body rests it is \f$\pi/2 + s \psi\f$ [rad].
+/// Where the body rests it is \f$\pi/2 + s \psi\f$.
 template <Scalar S>
-S flow_angle(const S& u, const S& w, const S& sin_psi, const S& cos_psi, const S& stroke) {
-  using std::atan2;
-  // Off the point without flow, where the angle has no derivative.
-  return atan2(S(stroke * (u * cos_psi - w * sin_psi) + S(1e-150)), S(-(u * sin_psi + w * cos_psi)));
+S flow_angle(const S& u, const S& w, const S& speed, const S& sin_psi, const S& cos_psi, const S& stroke) {
+  using std::abs;
+  using std::atan;
+  const S y = stroke * (u * cos_psi - w * sin_psi), x = -(u * sin_psi + w * cos_psi);
+  // By half the angle, which no division makes large.
+  const S acute = S(2.0) * atan(S(abs(y) / (speed + abs(x))));
+  const S size = select<S>(x < S(0.0), S(S(pi) - acute), acute);
+  return select<S>(y < S(0.0), S(-size), size);
 }
 
 }  // namespace wingbeat

@@ -277,6 +277,33 @@ S even_normal_force(const BladeElement<S>& w, const PitchingWings<S>& p, const S
   return S(0.5) * (normal_force_coefficient(w, p, psi) + normal_force_coefficient(w, p, S(-psi)));
 }
 
+/// The angle of flow_angle() [rad], or its sine and cosine alone where no more is needed.
+template <Scalar S>
+struct StripAngle {
+  bool known;
+  S angle, sine, cosine;
+};
+template <Scalar S>
+StripAngle<S> strip_angle(const PitchingWings<S>& p, const S& u, const S& w, const S& speed, const S& sin_psi,
+                          const S& cos_psi, const S& stroke) {
+  if (p.normal_force != NormalForce::normal_force || p.centre_of_pressure != CentreOfPressure::fourier) {
+    return {true, flow_angle(u, w, speed, sin_psi, cos_psi, stroke), S(0.0), S(0.0)};
+  }
+  const S per_speed = S(1.0) / speed;
+  return {false, S(0.0), stroke * (u * cos_psi - w * sin_psi) * per_speed, -((u * sin_psi + w * cos_psi) * per_speed)};
+}
+/// C_N and centre_of_pressure() by sine and cosine of the angle of attack.
+template <Scalar S>
+S normal_force_of(const NormalForceCoefficient<S>& c, const S& sine) {
+  return sine * (c.first + c.third * (S(3.0) - S(4.0) * square(sine)));
+}
+template <Scalar S>
+S centre_of_pressure_of(const S& cosine) {
+  const S c2 = square(cosine);
+  const S third = S(4.0) * c2 - S(3.0), fifth = S(5.0) + c2 * (S(16.0) * c2 - S(20.0));
+  return S(0.46) - cosine * (S(0.332) + S(0.037) * third + S(0.013) * fifth);
+}
+
 /// Force along the chord towards the trailing edge [N], and the same times the radius [N m].
 template <Scalar S>
 struct ChordwiseForce {
@@ -292,19 +319,24 @@ ChordwiseForce<S> add_strips_in_flow(const BladeElement<S>& w, const PitchingWin
                                      const S& even, TranslationLoads<S>& sum) {
   ChordwiseForce<S> chordwise;
   const S sense(mount.sense), own_stroke = sense * stroke, sin_psi = sense * state.sin_psi;
+  using std::sqrt;
   for (const WakeStrip<S>& strip : w.wake.strips.at) {
     const S& r = strip.radius;
     const S u = r * (sense * state.stroke_velocity + drift.u1) + drift.u0;
     const S down = drift.w0 + drift.w1 * r - w.wake.velocity;
-    const S square_of_speed = square(u) + square(down) + S(1e-300), sine2 = square(down) / square_of_speed;
-    const S angle = flow_angle(u, down, sin_psi, state.cos_psi, own_stroke);
+    const S square_of_speed = square(u) + square(down) + S(1e-300), speed = sqrt(square_of_speed);
+    const S sine2 = square(down) / square_of_speed;
+    const StripAngle<S> at = strip_angle(p, u, down, speed, sin_psi, state.cos_psi, own_stroke);
+    const S& angle = at.angle;
     const S closeness = S(1.0) + (state.clap - S(1.0)) * (S(1.0) - sine2);
     const S pressure = S(0.5) * w.air_density * S(mount.share) * square_of_speed * strip.area * closeness;
     // Of the wing `own_stroke`, of the vehicle's angles `sense` times that.
-    const S force = stroke * pressure * (normal_force_coefficient(w, p, angle) - even * sine2);
+    const S C_N = at.known ? normal_force_coefficient(w, p, angle) : normal_force_of(p.coefficient, at.sine);
+    const S place = at.known ? centre_of_pressure(p, angle) : centre_of_pressure_of(at.cosine);
+    const S force = stroke * pressure * (C_N - even * sine2);
     sum.normal = sum.normal + force;
     sum.stroke_moment = sum.stroke_moment + force * r;
-    sum.pitch_moment = sum.pitch_moment + force * strip.chord * (centre_of_pressure(p, angle) - p.axis);
+    sum.pitch_moment = sum.pitch_moment + force * strip.chord * (place - p.axis);
     if (acts(w.coefficients.tangential)) {
       const S along = pressure * tangential_force_coefficient(w, p, angle);
       chordwise.force = chordwise.force + along;
