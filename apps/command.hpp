@@ -40,6 +40,8 @@ void add_new(CLI::App& program, Action& action);
 void add_scale(CLI::App& program, Action& action);
 void add_synthesise(CLI::App& program, Action& action);
 void add_validate(CLI::App& program, Action& action);
+void add_trim(CLI::App& program, Action& action);
+void add_stability(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);
 void add_metrics(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);

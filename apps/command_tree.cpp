@@ -54,6 +54,8 @@ std::unique_ptr<CLI::App> command_tree(Action& action) {
   add_scale(*program, action);
   add_synthesise(*program, action);
   add_validate(*program, action);
+  add_trim(*program, action);
+  add_stability(*program, action);
   add_keys(*program, action);
   add_metrics(*program, action);
   add_schema(*program, action);

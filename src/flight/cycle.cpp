@@ -119,10 +119,78 @@ Eigen::VectorXd sizes_of(const CycleRun& run, const Eigen::VectorXd& z) {
   return sizes;
 }
 
+/// Mismatch over the sizes.
+Eigen::VectorXd scaled_gap(const CycleRun& run, const Eigen::VectorXd& gap, const Eigen::VectorXd& sizes) {
+  Eigen::VectorXd scaled = gap.cwiseQuotient(sizes);
+  if (run.free().crank()) scaled[0] = gap[0] / two_pi;
+  return scaled;
+}
+
+/// Slopes of the mismatch by differences.
+Eigen::MatrixXd slopes_at(CycleRun& run, const Eigen::VectorXd& z, const Eigen::VectorXd& gap,
+                          const Eigen::VectorXd& sizes) {
+  Eigen::MatrixXd slopes(z.size(), z.size());
+  for (Eigen::Index n = 0; n < z.size(); ++n) {
+    const double step = 1e-5 * sizes[n];
+    Eigen::VectorXd beside = z;
+    beside[n] += step;
+    slopes.col(n) = (run.mismatch(beside) - gap) / step;
+  }
+  return slopes;
+}
+
+/// The cycle that was run last, from z.
+DriveCycle cycle_from(const CycleRun& run, const Eigen::VectorXd& z, double off) {
+  const FlightTotals& totals = run.simulation().totals();
+  const double T = run.period_of(z);
+  DriveCycle cycle;
+  cycle.start = run.free().place(z, run.angle);
+  cycle.period = T;
+  for (std::size_t k = 0; k < 3; ++k) {
+    cycle.mean.force[k] = totals.force[k] / T;
+    cycle.mean.moment[k] = totals.moment[k] / T;
+  }
+  cycle.electrical = totals.electrical / T;
+  cycle.aerodynamic = totals.wing_air / T;
+  cycle.mismatch = off;
+  return cycle;
+}
+
+/// Newton's method from z on; slopes that are given serve as long as they bring the mismatch down.
+std::optional<DriveCycle> solve_cycle(CycleRun& run, Eigen::VectorXd z, double closes, Eigen::MatrixXd& slopes) {
+  constexpr int max_iterations = 40;
+  constexpr double largest_step = 0.2, brings_down = 0.3;
+  Eigen::VectorXd gap = run.mismatch(z), sizes = sizes_of(run, z);
+  double off = scaled_gap(run, gap, sizes).norm();
+  bool fresh = false;
+  for (int iteration = 0; iteration < max_iterations && off > closes; ++iteration) {
+    if (slopes.rows() != z.size()) slopes = slopes_at(run, z, gap, sizes), fresh = true;
+    const Eigen::VectorXd correction = slopes.partialPivLu().solve(gap);
+    const double longest = correction.cwiseQuotient(sizes).cwiseAbs().maxCoeff();
+    double share = longest > largest_step ? largest_step / longest : 1.0;
+    bool taken = false;
+    for (int halving = 0; halving < (fresh ? 6 : 1) && !taken; ++halving, share *= 0.5) {
+      const Eigen::VectorXd next = z - share * correction;
+      if (!(run.period_of(next) > 0.0)) continue;
+      const Eigen::VectorXd next_gap = run.mismatch(next);
+      const double next_off = scaled_gap(run, next_gap, sizes).norm();
+      if (!(next_off < (fresh ? 0.95 : brings_down) * off)) continue;
+      z = next, gap = next_gap, off = next_off, taken = true;
+    }
+    if (!taken && fresh) return std::nullopt;
+    if (!taken || share < 0.5) slopes.resize(0, 0);
+    fresh = false;
+    sizes = sizes_of(run, z);
+  }
+  if (!(off <= closes)) return std::nullopt;
+  run.mismatch(z);
+  return cycle_from(run, z, off);
+}
+
 }  // namespace
 
 AveragedFlight::AveragedFlight(FlightVehicle vehicle, const FlightCycleOptions& options)
-    : vehicle_(std::move(vehicle)), options_(options), last_(vehicle_.drives.size()) {
+    : vehicle_(std::move(vehicle)), options_(options), last_(vehicle_.drives.size()), slopes_(vehicle_.drives.size()) {
   for (const FlightDrive& drive : vehicle_.drives) {
     FlightVehicle alone = vehicle_;
     alone.drives = {drive};
@@ -136,65 +204,18 @@ std::optional<DriveCycle> AveragedFlight::cycle_of(std::size_t drive, const Flig
                                                    const SteadyMotion& motion) {
   CycleRun run(alone_[drive], controls, motion, options_.tolerance);
   const double closes = 100.0 * options_.tolerance;
-  const auto solve = [&](Eigen::VectorXd z) -> std::optional<DriveCycle> {
-    constexpr int max_iterations = 25;
-    double best = infinity;
-    Eigen::VectorXd gap = run.mismatch(z);
-    for (int iteration = 0; iteration < max_iterations; ++iteration) {
-      const Eigen::VectorXd sizes = sizes_of(run, z);
-      Eigen::VectorXd scaled = gap.cwiseQuotient(sizes);
-      if (run.free().crank()) scaled[0] = gap[0] / two_pi;
-      const double off = scaled.norm();
-      if (off <= closes) {
-        DriveCycle cycle;
-        run.mismatch(z);
-        const FlightTotals& totals = run.simulation().totals();
-        const double T = run.period_of(z);
-        cycle.start = run.free().place(z, run.angle);
-        cycle.period = T;
-        for (std::size_t k = 0; k < 3; ++k) {
-          cycle.mean.force[k] = totals.force[k] / T;
-          cycle.mean.moment[k] = totals.moment[k] / T;
-        }
-        cycle.electrical = totals.electrical / T;
-        cycle.aerodynamic = totals.wing_air / T;
-        cycle.mismatch = off;
-        return cycle;
-      }
-      best = std::min(best, off);
-      if (off > 1e3 * best) break;
-      Eigen::MatrixXd slopes(z.size(), z.size());
-      for (Eigen::Index n = 0; n < z.size(); ++n) {
-        const double step = 1e-5 * sizes[n];
-        Eigen::VectorXd beside = z;
-        beside[n] += step;
-        slopes.col(n) = (run.mismatch(beside) - gap) / step;
-      }
-      const Eigen::VectorXd correction = slopes.partialPivLu().solve(gap);
-      // No further than a tenth of the sizes at once, and where that does not help, half of it.
-      const double longest = correction.cwiseQuotient(sizes).cwiseAbs().maxCoeff();
-      double share = longest > 0.2 ? 0.2 / longest : 1.0;
-      bool taken = false;
-      for (int halving = 0; halving < 6 && !taken; ++halving, share *= 0.5) {
-        const Eigen::VectorXd next = z - share * correction;
-        if (!(run.period_of(next) > 0.0)) continue;
-        const Eigen::VectorXd next_gap = run.mismatch(next);
-        Eigen::VectorXd next_scaled = next_gap.cwiseQuotient(sizes);
-        if (run.free().crank()) next_scaled[0] = next_gap[0] / two_pi;
-        if (next_scaled.norm() < 0.95 * off || off < 1e-4) z = next, gap = next_gap, taken = true;
-      }
-      if (!taken) break;
-    }
-    return std::nullopt;
-  };
   try {
     if (last_[drive]) {
       run.angle = last_[drive]->start.angle;
-      if (auto near = solve(run.free().of(last_[drive]->start, last_[drive]->period))) return near;
+      if (auto near =
+              solve_cycle(run, run.free().of(last_[drive]->start, last_[drive]->period), closes, slopes_[drive])) {
+        return near;
+      }
     }
     const std::optional<Eigen::VectorXd> z = run.start_up();
     if (!z) return std::nullopt;
-    return solve(*z);
+    slopes_[drive].resize(0, 0);
+    return solve_cycle(run, *z, closes, slopes_[drive]);
   } catch (const std::runtime_error&) {
     return std::nullopt;  // steps that fail: it does not settle
   }

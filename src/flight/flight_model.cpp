@@ -220,8 +220,13 @@ void FlightModel::begin_piece() {
 }
 
 void FlightModel::sum_impacts() {
-  now.impact_loss = 0.0;
-  for (const TimeModel& drive : drives) now.impact_loss += drive.now.impact_loss;
+  now.impact_loss = totals.stops = 0.0;
+  for (const TimeModel& drive : drives) {
+    now.impact_loss += drive.now.impact_loss;
+    const auto impulse = [&](Integral which) { return drive.now.impulses[std::size_t(which)]; };
+    totals.stops += drive.now.impact_loss + impulse(Integral::friction_work) + impulse(Integral::gear_work) +
+                    impulse(Integral::residual_work);
+  }
 }
 
 void FlightModel::unknowns(double* y) const {

@@ -181,15 +181,17 @@ std::optional<PeriodicFlight> periodic_flight(const FlightVehicle& vehicle, cons
     FlightMap map(vehicle, at.controls, tolerance);
     VectorXd z = map.start(at);
     VectorXd gap = map.mismatch(z);
-    MatrixXd slopes(z.size(), z.size());
+    MatrixXd slopes;
     double off = infinity;
-    const auto linearise = [&](double share) {
+    const auto linearise = [&](double share, bool central) {
       const VectorXd sizes = sizes_for(map, z, steps);
+      slopes.resize(z.size(), z.size());
       for (Eigen::Index n = 0; n < z.size(); ++n) {
         VectorXd above = z, below = z;
         above[n] += share * sizes[n];
         below[n] -= share * sizes[n];
-        slopes.col(n) = (map.mismatch(above) - map.mismatch(below)) / (2.0 * share * sizes[n]);
+        slopes.col(n) = central ? VectorXd((map.mismatch(above) - map.mismatch(below)) / (2.0 * share * sizes[n]))
+                                : VectorXd((map.mismatch(above) - gap) / (share * sizes[n]));
       }
     };
     for (int iteration = 0; iteration < max_iterations; ++iteration) {
@@ -198,8 +200,8 @@ std::optional<PeriodicFlight> periodic_flight(const FlightVehicle& vehicle, cons
       if (map.crank()) scaled[0] = gap[0] / two_pi;
       const double before = off;
       off = scaled.norm();
-      if (off <= 1e3 * tolerance || (iteration > 3 && off > 0.5 * before && off < 1e-6)) break;
-      linearise(1e-4);
+      if (off <= 100.0 * tolerance || (iteration > 3 && off > 0.5 * before && off < 1e-6)) break;
+      if (slopes.size() == 0 || off > 0.2 * before) linearise(1e-5, false);
       VectorXd correction = slopes.partialPivLu().solve(gap);
       const double longest = correction.cwiseQuotient(sizes).cwiseAbs().maxCoeff();
       if (longest > 0.1) correction *= 0.1 / longest;
@@ -210,7 +212,7 @@ std::optional<PeriodicFlight> periodic_flight(const FlightVehicle& vehicle, cons
       detail = "no flight that repeats with the wingbeat was found near the trim";
       return std::nullopt;
     }
-    linearise(1e-4);
+    linearise(1e-4, true);
     PeriodicFlight flight;
     flight.period = map.period(z);
     flight.mismatch = off;

@@ -6,12 +6,46 @@
 #include <utility>
 
 #include "wingbeat/core/text.hpp"
-#include "wingbeat/flight/wing_reaction.hpp"
+#include "wingbeat/cycle/steady_flapping.hpp"
 
 namespace wingbeat {
 namespace {
 
 using Eigen::MatrixXd, Eigen::VectorXd;
+
+/// Mean lift of all drives on a body at rest, where each has this voltage or amplitude [V]; absent where they do not
+/// flap.
+double lift_at(const FlightVehicle& v, double voltage) {
+  double lift = 0.0;
+  for (const FlightDrive& drive : v.drives) {
+    Vehicle<double> at_rest = drive.vehicle;
+    at_rest.wings.flow = nullptr;
+    if (drive.supply.type == SupplyType::battery) set_mean_voltage(at_rest, voltage);
+    else at_rest.voltage = voltage;
+    const SteadyFlapping found = find_steady_flapping(at_rest);
+    if (found.status != FlappingStatus::flapping) return absent;
+    lift += found.metrics[Metric::lift_mean];
+  }
+  return lift;
+}
+
+/// The least voltage at which the lift carries the weight, about, or that with the largest lift below it.
+double lifting_voltage(const FlightVehicle& v) {
+  constexpr int parts = 24;
+  const double weight = v.body.mass * standard_gravity;
+  const double highest = v.ranges[std::size_t(FlightControl::voltage)].high;
+  double before = absent, best = -infinity, best_at = v.stated_voltage;
+  for (int n = 1; n <= parts; ++n) {
+    const double voltage = highest * n / parts, lift = lift_at(v, voltage);
+    if (lift >= weight) {
+      if (!(before < weight)) return voltage;
+      return voltage - highest / parts * (lift - weight) / (lift - before);
+    }
+    if (lift > best) best = lift, best_at = voltage;
+    before = lift;
+  }
+  return best_at;
+}
 
 /// What is adjusted, and how its values are reported.
 struct Unknown {

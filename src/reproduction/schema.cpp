@@ -33,7 +33,7 @@ Json linearise_schema() {
                          schema::with_text(described::two_sides_maps_schema(), "sides that differ")});
 }
 
-constexpr std::array<std::pair<std::string_view, Json (*)()>, 18> schemas = {
+constexpr std::array<std::pair<std::string_view, Json (*)()>, 20> schemas = {
     {{"run", run_schema},
      {"compare", described::comparison_schema},
      {"sweep", described::sweep_schema},
@@ -50,6 +50,8 @@ constexpr std::array<std::pair<std::string_view, Json (*)()>, 18> schemas = {
      {"validate", described::validation_schema},
      {"export-kinematics", described::kinematics_schema},
      {"compare-loads", described::loads_schema},
+     {"trim", described::trim_schema},
+     {"stability", described::stability_schema},
      {"keys", described::keys_schema},
      {"metrics", described::metrics_schema}}};
 

@@ -2,6 +2,7 @@
 // model.md section 18.
 #pragma once
 
+#include <Eigen/Core>
 #include <optional>
 #include <vector>
 
@@ -54,6 +55,7 @@ class AveragedFlight {
   FlightCycleOptions options_;
   std::vector<FlightVehicle> alone_;  ///< each drive without the other
   std::vector<std::optional<DriveCycle>> last_;
+  std::vector<Eigen::MatrixXd> slopes_;  ///< of each drive's mismatch where the last cycle was found
 };
 
 }  // namespace wingbeat

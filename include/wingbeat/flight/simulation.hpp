@@ -25,6 +25,7 @@ struct FlightTotals {
   double friction = 0.0;     ///< lost in the mechanism and in pitch hinges [J]
   double wing_air = 0.0;     ///< that the drives give to the air [J]
   double body_air = 0.0;     ///< that the air does on the body [J]
+  double stops = 0.0;        ///< lost in impacts on stops of the pitching [J]
   double residual = 0.0;     ///< what the formulation of a crank fails to conserve [J]
 
   template <class Self, class Use>
