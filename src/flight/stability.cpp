@@ -225,12 +225,85 @@ std::optional<PeriodicFlight> periodic_flight(const FlightVehicle& vehicle, cons
       monodromy = slopes.bottomRightCorner(rest, rest) + MatrixXd::Identity(rest, rest) -
                   slopes.col(0).tail(rest) * slopes.row(0).tail(rest) / slopes(0, 0);
     }
-    const Eigen::VectorXcd values = monodromy.eigenvalues();
-    flight.multipliers.assign(values.begin(), values.end());
+    const Eigen::EigenSolver<MatrixXd> found(monodromy);
+    for (Eigen::Index n = 0; n < monodromy.rows(); ++n) {
+      bool longitudinal = false;
+      shape_of(found.eigenvectors().col(n).tail(8), steps, longitudinal);
+      flight.multipliers.push_back(found.eigenvalues()[n]);
+      flight.longitudinal.push_back(longitudinal);
+    }
     return flight;
   } catch (const std::runtime_error&) {
     detail = "the flight over a wingbeat could not be integrated";
     return std::nullopt;
+  }
+}
+
+/// Of `among`, those whose distances to `to` sum to the least, one for each; fewer where there are fewer.
+std::vector<Complex> nearest_of(const std::vector<Complex>& to, const std::vector<Complex>& among) {
+  std::vector<Complex> best;
+  double least = infinity;
+  std::vector<std::size_t> taken;
+  const auto search = [&](const auto& self, std::size_t n, double sum) -> void {
+    if (sum >= least) return;
+    if (n == std::min(to.size(), among.size())) {
+      least = sum;
+      best.clear();
+      for (const std::size_t k : taken) best.push_back(among[k]);
+      return;
+    }
+    for (std::size_t k = 0; k < among.size(); ++k) {
+      if (std::find(taken.begin(), taken.end(), k) != taken.end()) continue;
+      taken.push_back(k);
+      self(self, n + 1, sum + std::abs(among[k] - to[n]));
+      taken.pop_back();
+    }
+  };
+  search(search, 0, 0.0);
+  return best;
+}
+
+/// Of complex pairs the upper ones, the fastest growing first.
+std::vector<Complex> upper_ones(std::vector<Complex> values) {
+  std::erase_if(values, [](const Complex& s) { return s.imag() < 0.0; });
+  std::sort(values.begin(), values.end(), [](const Complex& a, const Complex& b) { return a.real() > b.real(); });
+  return values;
+}
+
+double growth_of(const FlightMode& mode) { return mode.averaged ? mode.averaged->real() : mode.floquet->real(); }
+
+/// Adds the modes of one kind of motion, both ways beside each other.
+void add_modes(bool longitudinal, const FlightVector& steps, StabilityResult& result) {
+  const Eigen::EigenSolver<FlightMatrix> modes(result.model->A);
+  std::vector<Complex> averaged, exponents;
+  std::vector<std::pair<Complex, std::string>> shapes;
+  for (Eigen::Index n = 0; n < 8; ++n) {
+    bool along = false;
+    const std::string shape = shape_of(modes.eigenvectors().col(n), steps, along);
+    if (along != longitudinal) continue;
+    averaged.push_back(modes.eigenvalues()[n]);
+    shapes.push_back({averaged.back(), shape});
+  }
+  if (result.periodic) {
+    for (std::size_t n = 0; n < result.periodic->multipliers.size(); ++n) {
+      const Complex multiplier = result.periodic->multipliers[n];
+      if (result.periodic->longitudinal[n] != longitudinal || !(std::abs(multiplier) > 1e-12)) continue;
+      exponents.push_back(std::log(multiplier) / result.periodic->period);
+    }
+    exponents = upper_ones(nearest_of(averaged, exponents));
+  }
+  averaged = upper_ones(averaged);
+  for (std::size_t n = 0; n < std::max(averaged.size(), exponents.size()); ++n) {
+    FlightMode mode;
+    mode.longitudinal = longitudinal;
+    if (n < averaged.size()) {
+      mode.averaged = averaged[n];
+      for (const auto& [value, shape] : shapes) {
+        if (value == averaged[n]) mode.shape = shape;
+      }
+    }
+    if (n < exponents.size()) mode.floquet = exponents[n];
+    result.modes.push_back(mode);
   }
 }
 
@@ -296,39 +369,20 @@ StabilityResult flight_stability(AveragedFlight& flight, const TrimResult& at) {
   }
   const FlightVector steps = steps_of(flight, at);
   result.periodic = periodic_flight(flight.vehicle(), at, steps, flight.options().tolerance, result.periodic_detail);
-  const Eigen::EigenSolver<FlightMatrix> modes(result.model->A);
-  std::vector<Complex> exponents;
-  if (result.periodic) {
-    for (const Complex& multiplier : result.periodic->multipliers) {
-      if (std::abs(multiplier) > 1e-12) exponents.push_back(std::log(multiplier) / result.periodic->period);
-    }
-  }
-  std::vector<bool> used(exponents.size(), false);
-  std::vector<Eigen::Index> order(8);
-  std::iota(order.begin(), order.end(), Eigen::Index(0));
-  std::sort(order.begin(), order.end(), [&](Eigen::Index a, Eigen::Index b) {
-    return modes.eigenvalues()[a].real() > modes.eigenvalues()[b].real();
-  });
-  for (const Eigen::Index n : order) {
-    const Complex value = modes.eigenvalues()[n];
-    FlightMode mode;
-    mode.averaged = value;
-    mode.shape = shape_of(modes.eigenvectors().col(n), steps, mode.longitudinal);
-    std::size_t nearest = exponents.size();
-    for (std::size_t k = 0; k < exponents.size(); ++k) {
-      if (!used[k] &&
-          (nearest == exponents.size() || std::abs(exponents[k] - value) < std::abs(exponents[nearest] - value))) {
-        nearest = k;
-      }
-    }
-    if (nearest < exponents.size()) used[nearest] = true, mode.floquet = exponents[nearest];
-    if (value.imag() >= 0.0) result.modes.push_back(mode);  // of a pair the one above
-  }
+  for (const bool longitudinal : {true, false}) add_modes(longitudinal, steps, result);
+  std::stable_sort(result.modes.begin(), result.modes.end(),
+                   [](const FlightMode& a, const FlightMode& b) { return growth_of(a) > growth_of(b); });
   return result;
 }
 
+double FlightMode::apart() const {
+  if (!averaged || !floquet || (averaged->imag() == 0.0) != (floquet->imag() == 0.0)) return absent;
+  return std::abs(*floquet - *averaged) / std::abs(*averaged);
+}
+
 std::vector<ModeSensitivity> mode_sensitivities(const Design<double>& design, const FlightCondition& condition,
-                                                const TrimOptions& options) {
+                                                const TrimOptions& options,
+                                                const std::vector<std::string>& parameters) {
   constexpr double share = 0.005;
   std::vector<ModeSensitivity> found;
   AveragedFlight stated(flight_vehicle(design), options.cycle);
@@ -351,6 +405,9 @@ std::vector<ModeSensitivity> mode_sensitivities(const Design<double>& design, co
   };
   for (const Parameter<double>& parameter : parameter_table<double>()) {
     if (!parameter.set || parameter.path.starts_with("body.control") || parameter.path.starts_with("supply.")) continue;
+    if (!parameters.empty() && std::find(parameters.begin(), parameters.end(), parameter.path) == parameters.end()) {
+      continue;
+    }
     const std::optional<double> value = parameter.get(design);
     if (!value || *value == 0.0) continue;
     const std::optional<Complex> high = eigenvalue(parameter, *value * (1.0 + share));

@@ -88,14 +88,14 @@ class TrimProblem {
   }
 
   VectorXd start(const TrimResult* near) const {
-    VectorXd x(count());
+    VectorXd x = VectorXd::Zero(count());
     for (Eigen::Index n = 0; n < count(); ++n) {
       const Unknown& u = unknowns_[std::size_t(n)];
-      if (u.kind == Unknown::Kind::pitch) x[n] = near ? near->pitch : 0.0;
-      else if (u.kind == Unknown::Kind::roll) x[n] = near ? near->roll : 0.0;
-      else
-        x[n] = near ? near->controls[u.control] : u.control == FlightControl::voltage ? vehicle_.stated_voltage : 0.0;
+      if (near && u.kind == Unknown::Kind::pitch) x[n] = near->pitch;
+      if (near && u.kind == Unknown::Kind::roll) x[n] = near->roll;
+      if (near && u.kind == Unknown::Kind::control) x[n] = near->controls[u.control];
     }
+    if (!near) x[0] = lifting_voltage(vehicle_);
     return x;
   }
   void place(const VectorXd& x, TrimResult& at) const {

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -118,8 +119,8 @@ void plot_stability(const StabilityReport& report, PlotFormat format, const std:
   std::vector<KeyEntry> entries = {point_key("averaged over the wingbeat", averaged)};
   if (report.result.periodic) entries.push_back(point_key("Floquet theory of the whole flight", floquet));
   const Key key(std::move(entries), (right - left) * format.width);
-  const double key_top = 0.26, head = key_top + key.height(), foot = 0.42, each = 1.6, gap = 0.28;
-  const double inches = head + foot + 2.0 * (each + gap);
+  const double key_top = 0.26, head = key_top + key.height(), foot = 0.42, each = 1.6, gap = 0.45;
+  const double inches = head + foot + 2.0 * each + gap + 0.2;
   Figure figure(format, inches);
   for (const bool longitudinal : {true, false}) {
     figure.add("${} << END\n", longitudinal ? "along" : "across");
@@ -129,22 +130,22 @@ void plot_stability(const StabilityReport& report, PlotFormat format, const std:
         figure.add("{} {} {} {}\n", a.real(), a.imag(), f.real(), f.imag());
       };
       const std::complex<double> none(std::nan(""), std::nan(""));
-      row(mode.averaged, mode.floquet.value_or(none));
-      if (mode.averaged.imag() != 0.0) {
-        row(std::conj(mode.averaged), mode.floquet ? std::conj(*mode.floquet) : none);
-      }
+      row(mode.averaged.value_or(none), mode.floquet.value_or(none));
+      row(std::conj(mode.averaged.value_or(none)), std::conj(mode.floquet.value_or(none)));
     }
     figure.add("END\n");
   }
   figure.add("set multiplot\nset lmargin at screen {}\nset rmargin at screen {}\n", left, right);
   for (const bool longitudinal : {true, false}) {
     if (!longitudinal) figure.next_panel();
-    const double top = 1.0 - (head + gap + (each + gap) * (longitudinal ? 0.0 : 1.0)) / inches;
+    const double top = 1.0 - (head + 0.2 + (longitudinal ? 0.0 : each + gap)) / inches;
     const double bottom = top - each / inches;
     double low = -1.0, high = 1.0, tall = 1.0;
     for (const FlightMode& mode : modes) {
       if (mode.longitudinal != longitudinal) continue;
-      for (const std::complex<double>& s : {mode.averaged, mode.floquet.value_or(mode.averaged)}) {
+      for (const std::optional<std::complex<double>>& way : {mode.averaged, mode.floquet}) {
+        if (!way) continue;
+        const std::complex<double>& s = *way;
         low = std::min(low, s.real()), high = std::max(high, s.real()), tall = std::max(tall, std::abs(s.imag()));
       }
     }

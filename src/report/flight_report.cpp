@@ -17,6 +17,9 @@ double endurance_of(const TrimReport& report, const TrimResult& t) {
 }
 double range_of(const TrimReport& report, const TrimResult& t) { return t.condition.speed * endurance_of(report, t); }
 
+/// Without what is rounding.
+double cleared(double x) { return std::abs(x) < 1e-9 ? 0.0 : x; }
+
 std::string time_text(double seconds) { return std::isfinite(seconds) ? fmt::format("{:.4g}", seconds) : "-"; }
 
 /// "grows twofold in 0.16 s" or "halves in 0.07 s".
@@ -48,7 +51,7 @@ std::string text_trim(const FlightVehicle& vehicle, const TrimReport& report) {
     if (!t.flight) return text;
     text += fmt::format("  {:<34}{:>12.5g} m/s, climb {:.4g} m/s, turn {:.4g} rad/s\n", "speed", t.condition.speed,
                         t.condition.climb, t.condition.turn_rate);
-    text += fmt::format("  {:<34}{:>12.5g} deg\n", "pitch attitude, nose up", degrees_per_radian * t.pitch);
+    text += fmt::format("  {:<34}{:>12.5g} deg\n", "pitch attitude, nose up", cleared(degrees_per_radian * t.pitch));
     if (t.roll != 0.0)
       text += fmt::format("  {:<34}{:>12.5g} deg\n", "roll, right wing down", degrees_per_radian * t.roll);
     for (std::size_t k = 0; k < flight_control_count; ++k) {
@@ -56,7 +59,7 @@ std::string text_trim(const FlightVehicle& vehicle, const TrimReport& report) {
       const bool angle = std::string_view(flight_control_units[k]) == "rad";
       const double factor = angle ? degrees_per_radian : 1.0;
       text += fmt::format("  {:<34}{:>12.5g} {:<4} of {:.4g} to {:.4g}\n", name_of(FlightControl(k)),
-                          factor * t.controls.at[k], angle ? "deg" : flight_control_units[k],
+                          cleared(factor * t.controls.at[k]), angle ? "deg" : flight_control_units[k],
                           factor * vehicle.ranges[k].low, factor * vehicle.ranges[k].high);
     }
     text += fmt::format("  {:<34}{:>12.5g} Hz\n  {:<34}{:>12.5g} W\n", "flapping frequency", t.frequency,
@@ -75,8 +78,9 @@ std::string text_trim(const FlightVehicle& vehicle, const TrimReport& report) {
     const double control =
         of_pitch ? t.controls[*of_pitch] * (*of_pitch == FlightControl::bias ? 1.0 : degrees_per_radian) : absent;
     text += fmt::format("{:>9.4g} {:>8.4g} {:>9.4g} {:>10.5g} {:>9.4g} {:>9.4g} {:>10} {:>9}  {}\n", t.condition.speed,
-                        t.condition.climb, degrees_per_radian * t.pitch, t.controls[FlightControl::voltage], control,
-                        t.power, time_text(endurance_of(report, t)), time_text(range_of(report, t)), name_of(t.status));
+                        t.condition.climb, cleared(degrees_per_radian * t.pitch), t.controls[FlightControl::voltage],
+                        cleared(control), t.power, time_text(endurance_of(report, t)), time_text(range_of(report, t)),
+                        name_of(t.status));
   }
   for (const TrimResult& t : report.flights) {
     if (t.status != TrimStatus::trimmed) text += fmt::format("{:g} m/s: {}\n", t.condition.speed, t.detail);
@@ -89,18 +93,23 @@ std::string text_stability(const StabilityReport& report) {
   std::string text = fmt::format("{}\n  {}: {}\n", report.vehicle, name_of(r.trim.status), r.trim.detail);
   if (!r.model) return text;
   text += "\nModes, the least stable first; real part and angular frequency in 1/s\n";
-  text += fmt::format("  {:<13} {:<26} {:<26} {:>9}  {}\n", "", "averaged over the wingbeat", "Floquet, whole flight",
+  text += fmt::format("  {:<13} {:<27} {:<27} {:>16}  {}\n", "", "averaged over the wingbeat", "Floquet, whole flight",
                       "apart", "averaged");
   for (const FlightMode& mode : r.modes) {
-    const std::string floquet = mode.floquet ? number_text(*mode.floquet) : std::string("         -");
-    const std::string apart =
-        mode.floquet
-            ? fmt::format("{:.1f} %", 100.0 * std::abs(*mode.floquet - mode.averaged) / std::abs(mode.averaged))
-            : "-";
-    std::string what = growth_text(mode.averaged);
-    if (mode.averaged.imag() != 0.0) what += fmt::format(", period {:.3g} s", FlightMode::period(mode.averaged));
-    text += fmt::format("  {:<13} {:<26} {:<26} {:>9}  {}; {}\n", mode.longitudinal ? "longitudinal" : "lateral",
-                        number_text(mode.averaged), floquet, apart, what, mode.shape);
+    const auto shown = [](const auto& s) { return s ? number_text(*s) : std::string("         -"); };
+    const double apart = mode.apart();
+    std::string what;
+    if (mode.averaged) {
+      what = growth_text(*mode.averaged);
+      if (mode.averaged->imag() != 0.0) what += fmt::format(", period {:.3g} s", FlightMode::period(*mode.averaged));
+      what += "; " + mode.shape;
+    }
+    text += fmt::format("  {:<13} {:<27} {:<27} {:>16}  {}\n", mode.longitudinal ? "longitudinal" : "lateral",
+                        shown(mode.averaged), shown(mode.floquet),
+                        std::isfinite(apart)            ? fmt::format("{:.1f} %", 100.0 * apart)
+                        : mode.averaged && mode.floquet ? "of another kind"
+                                                        : "-",
+                        what);
   }
   if (r.periodic) {
     text += fmt::format(
@@ -193,15 +202,20 @@ const Description<FlightMode>& flight_mode_description() {
           .always("longitudinal", "", "else lateral", &R::longitudinal)
           .always("shape", "", "states that take part most", &R::shape)
           .always("averaged_real_per_s", "1/s", "averaged over the wingbeat",
-                  [](const R& r) { return r.averaged.real(); })
-          .always("averaged_imaginary_per_s", "1/s", "", [](const R& r) { return r.averaged.imag(); })
+                  [](const R& r) { return r.averaged ? r.averaged->real() : absent; })
+          .always("averaged_imaginary_per_s", "1/s", "",
+                  [](const R& r) { return r.averaged ? r.averaged->imag() : absent; })
           .always("floquet_real_per_s", "1/s", "of the whole periodic flight",
                   [](const R& r) { return r.floquet ? r.floquet->real() : absent; })
           .always("floquet_imaginary_per_s", "1/s", "",
                   [](const R& r) { return r.floquet ? r.floquet->imag() : absent; })
           .always("doubling_time_s", "s", "of the averaged mode; negative where it halves",
-                  [](const R& r) { return FlightMode::doubling_time(r.averaged); })
-          .always("period_s", "s", "", [](const R& r) { return FlightMode::period(r.averaged); });
+                  [](const R& r) { return r.averaged ? FlightMode::doubling_time(*r.averaged) : absent; })
+          .always("period_s", "s", "of the averaged mode, where it oscillates",
+                  [](const R& r) { return r.averaged ? FlightMode::period(*r.averaged) : absent; })
+          .always("apart", "1",
+                  "distance of the two over the averaged one; null where one oscillates and the other not",
+                  [](const R& r) { return r.apart(); });
   return description;
 }
 

@@ -27,13 +27,16 @@ struct FlightLinearModel {
   std::vector<FlightControl> controls;  ///< those that the vehicle has
 };
 
-/// A number of modes is reported in pairs of which one is given.
+/// One mode by either way, of a complex pair the one of positive imaginary part: within its kind of motion, by
+/// averaging and by Floquet theory, each ordered by growth.
 struct FlightMode {
-  std::complex<double> averaged;                ///< [1/s]
-  std::optional<std::complex<double>> floquet;  ///< [1/s]; the logarithm of the multiplier over the period
-  std::string shape;                            ///< names of the largest states of the averaged mode
-  bool longitudinal = false;
+  bool longitudinal = false;                     ///< else lateral
+  std::optional<std::complex<double>> averaged;  ///< [1/s]
+  std::string shape;                             ///< names of the largest states of the averaged mode
+  std::optional<std::complex<double>> floquet;   ///< [1/s]; the logarithm of the multiplier over the period
 
+  /// Distance of the two over the averaged one [1]; absent where one is missing, or one oscillates and the other not.
+  double apart() const;
   static double doubling_time(std::complex<double> s) { return std::log(2.0) / s.real(); }  ///< < 0: halves
   static double period(std::complex<double> s) { return two_pi / std::abs(s.imag()); }
 };
@@ -43,6 +46,7 @@ struct PeriodicFlight {
   double period = 0.0;  ///< [s]
   FlightVector mean;    ///< of the states over the period
   std::vector<std::complex<double>> multipliers;
+  std::vector<bool> longitudinal;  ///< of each multiplier, by its motion of the body
   double mismatch = 0.0;
 };
 
@@ -64,11 +68,13 @@ StabilityResult flight_stability(AveragedFlight& flight, const TrimResult& at);
 struct ModeSensitivity {
   std::string parameter;
   double value = 0.0;               ///< [SI]
-  std::complex<double> eigenvalue;  ///< with the parameter 1 % larger, trimmed anew [1/s]
+  std::complex<double> eigenvalue;  ///< with the parameter 0.5 % larger [1/s]
   double slope = 0.0;               ///< change of the real part over the relative change of the parameter [1/s]
 };
-/// Central differences over +-0.5 % of every parameter that is not zero, each vehicle trimmed anew.
+/// Central differences over +-0.5 % of these parameters, or of all that are not zero, each vehicle trimmed anew; the
+/// largest first.
 std::vector<ModeSensitivity> mode_sensitivities(const Design<double>& design, const FlightCondition& condition,
-                                                const TrimOptions& options = {});
+                                                const TrimOptions& options = {},
+                                                const std::vector<std::string>& parameters = {});
 
 }  // namespace wingbeat
