@@ -159,7 +159,9 @@ const Description<TrimResult>& trim_description() {
         .always("frequency_hz", "Hz", "of the first drive", &R::frequency)
         .always("power_electrical_w", "W", "mean, at the terminals of all drives", &R::power);
     for (std::size_t k = 0; k < flight_control_count; ++k) {
-      d.always(std::string("control_") + name_of(FlightControl(k)), flight_control_units[k], "",
+      const std::string_view unit = flight_control_units[k];
+      const char* suffix = unit == "V" ? "_v" : unit == "rad" ? "_rad" : "";
+      d.always(std::string("control_") + name_of(FlightControl(k)) + suffix, unit, "",
                [k](const R& r) { return r.controls.at[k]; });
     }
     return d;

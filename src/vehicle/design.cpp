@@ -236,8 +236,8 @@ void validate_body(const Design<double>& d) {
   if (!(d.motors == 1.0 || d.motors == 2.0) || !(wings == 2.0 || wings == 4.0)) {
     throw ParameterError("wing.count",
                          detail::format("a body carries two or four wings, driven by one motor, or by one "
-                                        "on either side; there are %g wings of %g motors",
-                                        wings, d.motors));
+                                        "on either side; got %g wings and %g motor%s",
+                                        wings, d.motors, d.motors == 1.0 ? "" : "s"));
   }
   if (b.opposed && wings != 4.0) {
     throw ParameterError("body.opposed", "is of four wings, two on either side");

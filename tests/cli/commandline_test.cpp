@@ -47,10 +47,11 @@ class CommandLine : public Program {
   }
 };
 
-const std::vector<std::string> commands = {
-    "run",       "compare",  "sweep",     "identify-motor",    "read-bench",   "fit",
-    "tolerance", "optimise", "endurance", "reproduce",         "new",          "scale",
-    "keys",      "metrics",  "schema",    "export-kinematics", "compare-loads"};
+const std::vector<std::string> commands = {"run",           "compare",   "sweep",     "identify-motor",
+                                           "read-bench",    "fit",       "tolerance", "optimise",
+                                           "endurance",     "reproduce", "new",       "scale",
+                                           "keys",          "metrics",   "schema",    "export-kinematics",
+                                           "compare-loads", "trim",      "stability"};
 
 TEST_F(CommandLine, EveryHelpExampleWorksAsTyped) {
   for (const std::string& command : commands) {
@@ -72,7 +73,7 @@ TEST_F(CommandLine, EveryHelpExampleWorksAsTyped) {
 }
 
 TEST_F(CommandLine, OptionsAreSpelledAlikeEverywhere) {
-  for (const char* command : {"run", "compare", "sweep", "fit", "tolerance", "optimise", "endurance"}) {
+  for (const char* command : {"run", "compare", "sweep", "fit", "tolerance", "optimise", "endurance", "trim"}) {
     EXPECT_THAT(run({command, "--help"}).out, HasSubstr("--set KEY=VALUE")) << command;
   }
   for (const std::string& command : commands) {

@@ -364,6 +364,14 @@ class Schema(unittest.TestCase):
         self.check("optimise", self.file("held.toml", DRIVE_TRAINS.format(data=DATA, more=held) + springs))
         self.everything_is_written("optimise")
 
+    def test_flight(self):
+        self.check("trim", "flight-x-wing-battery", "--to", "0.5 m/s", "--points", "2")
+        self.check("trim", "flight-friction2022", "--set", 'vehicle.mass="30 g"', statuses=(3,))
+        self.everything_is_written("trim")
+        self.check("stability", "flight-friction2022", "--sensitivity")
+        self.check("stability", "flight-purdue", "--speed", "0.2 m/s")
+        self.everything_is_written("stability")
+
     def test_endurance(self):
         lost = self.check("endurance", "friction2022-battery", "--set", "supply.cells=2", "--set", 'vehicle.mass="5 g"')
         self.assertEqual(lost["hover"], "lost")
