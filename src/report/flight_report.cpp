@@ -33,6 +33,25 @@ std::string number_text(std::complex<double> s) {
                          : fmt::format("{:10.4f} ± {:.4f} i", s.real(), std::abs(s.imag()));
 }
 
+/// The trim of the whole flight beside that of the averaged one.
+std::string periodic_text(const StabilityReport& report) {
+  const PeriodicFlight& p = *report.result.periodic;
+  const FlightControls& averaged = report.result.trim.controls;
+  std::string text = fmt::format(
+      "\nThe whole flight, in which the body shakes with the wingbeat, drifts at the controls above by {:.3g} m/s ahead "
+      "and\n{:.3g} m/s downwards; it is in trim at",
+      cleared(p.drift[0]), cleared(p.drift[1]));
+  for (std::size_t k = 0; k < flight_control_count; ++k) {
+    if (averaged.at[k] == p.controls.at[k]) continue;
+    const bool angle = std::string_view(flight_control_units[k]) == "rad";
+    const double factor = angle ? degrees_per_radian : 1.0;
+    text +=
+        fmt::format(" {} {:.5g} {} (averaged {:.5g}),", name_of(FlightControl(k)), cleared(factor * p.controls.at[k]),
+                    angle ? "deg" : flight_control_units[k], cleared(factor * averaged.at[k]));
+  }
+  return text + fmt::format(" pitch {:.4g} deg\n", cleared(degrees_per_radian * p.mean[7]));
+}
+
 }  // namespace
 
 double usable_energy(const Battery<double>& battery) {
@@ -111,14 +130,7 @@ std::string text_stability(const StabilityReport& report) {
                                                         : "-",
                         what);
   }
-  if (r.periodic) {
-    text += fmt::format(
-        "\nThe flight that repeats with the wingbeat at these controls moves at u = {:.4g}, w = {:.4g} m/s, pitch "
-        "{:.4g} deg\n",
-        r.periodic->mean[0], r.periodic->mean[2], degrees_per_radian * r.periodic->mean[7]);
-  } else {
-    text += fmt::format("\nNo Floquet theory: {}\n", r.periodic_detail);
-  }
+  text += r.periodic ? periodic_text(report) : fmt::format("\nNo Floquet theory: {}\n", r.periodic_detail);
   text += "\nDerivatives: rate of each row by each column, SI\n            ";
   for (const char* name : flight_state_names)
     text += fmt::format("{:>11}", std::string(name).substr(0, std::string(name).find('_')));

@@ -41,13 +41,15 @@ struct FlightMode {
   static double period(std::complex<double> s) { return two_pi / std::abs(s.imag()); }
 };
 
-/// The whole flight that repeats with the wingbeat at the controls of a trim.
+/// The whole flight, drives and body, that repeats with the wingbeat and moves in the mean as a condition has it.
 struct PeriodicFlight {
-  double period = 0.0;  ///< [s]
-  FlightVector mean;    ///< of the states over the period
+  FlightControls controls;        ///< of which voltage and control of pitch differ from the averaged flight's trim
+  std::array<double, 2> drift{};  ///< at the controls of that trim: mean speed ahead and downwards beside it [m/s]
+  double period = 0.0;            ///< [s]
+  FlightVector mean;              ///< of the states over the period
   std::vector<std::complex<double>> multipliers;
   std::vector<bool> longitudinal;  ///< of each multiplier, by its motion of the body
-  double mismatch = 0.0;
+  double mismatch = 0.0;           ///< of end and start, of their sizes
 };
 
 struct StabilityResult {
