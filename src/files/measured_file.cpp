@@ -9,6 +9,7 @@
 #include <type_traits>
 
 #include "files/free_parameter.hpp"
+#include "files/measured_flight.hpp"
 #include "files/measured_maps.hpp"
 #include "files/measured_table.hpp"
 #include "files/toml_document.hpp"
@@ -64,6 +65,11 @@ class MeasuredReader {
       case ValidationModel::maps:
         known({"vehicle", "settings", "hinge_offset", "map"});
         set_.problem = detail::read_maps(plan_, table_, vehicle(), set_);
+        break;
+      case ValidationModel::prescribed_flight:
+        known({"wings", "air_density", "frequency", "stroke_mean", "stroke_harmonics", "pitch_mean", "pitch_harmonics",
+               "speed", "stroke_plane_tilt", "load"});
+        set_.problem = detail::read_flight(root_, plan_, table_, set_);
         break;
       case ValidationModel::none: break;
     }
@@ -244,34 +250,10 @@ class MeasuredReader {
     return label;
   }
 
-  /// [tables] planform_mm as a planform, with known.hub_offset_mm.
-  Planform<double> planform() const {
-    const auto tables = root_.table("tables");
-    const TomlNode* node = tables ? tables->node().find("planform_mm") : nullptr;
-    if (!node) root_.refuse("tables", "the model prescribed needs tables.planform_mm, rows of radius and chord");
-    Planform<double> p;
-    p.shape = PlanformShape::tabulated;
-    p.hub_offset = known_number("hub_offset_mm") * 1e-3;
-    const char* expected = "expected rows of radius and chord in mm, radii growing from 0";
-    if (node->kind != Kind::array || node->items.size() < 2) tables->refuse(*node, "planform_mm", expected);
-    for (const TomlNode& row : node->items) {
-      const bool pair = row.kind == Kind::array && row.items.size() == 2 && row.items[0].kind == Kind::number &&
-                        row.items[1].kind == Kind::number;
-      if (!pair) tables->refuse(row, "planform_mm", expected);
-      p.chord_table.push_back({row.items[0].number * 1e-3, row.items[1].number * 1e-3});
-    }
-    try {
-      validate(p);
-    } catch (const ParameterError& error) {
-      tables->refuse(*node, "planform_mm", error.reason());
-    }
-    return p;
-  }
-
   void read_prescribed() {
     known({"column", "quantity", "unit", "air_density"});
     PrescribedProblem problem;
-    problem.planform = planform();
+    problem.planform = detail::outline_of(root_, "planform_mm", "mm", known_number("hub_offset_mm") * 1e-3);
     problem.air_density = plan_.needed_quantity("air_density", "kg/m3");
     problem.unit = unit_of("N");
     set_.quantities = {quantity()};

@@ -33,6 +33,14 @@ std::string number_text(std::complex<double> s) {
                          : fmt::format("{:10.4f} ± {:.4f} i", s.real(), std::abs(s.imag()));
 }
 
+/// Standard deviation of the real part of the least stable mode over the relative one of all parameters, to first
+/// order, where these scatter independently [1/s].
+double scatter_of(const StabilityReport& report) {
+  double sum = 0.0;
+  for (const ModeSensitivity& s : report.sensitivities) sum += square(s.slope);
+  return report.sensitivities.empty() ? absent : std::sqrt(sum);
+}
+
 /// The trim of the whole flight beside that of the averaged one.
 std::string periodic_text(const StabilityReport& report) {
   const PeriodicFlight& p = *report.result.periodic;
@@ -149,6 +157,7 @@ std::string text_stability(const StabilityReport& report) {
       const ModeSensitivity& s = report.sensitivities[n];
       text += fmt::format("  {:<40}{:>+12.4g}\n", s.parameter, 0.01 * s.slope);
     }
+    text += fmt::format("  {:<40}{:>12.4g}\n", "all parameters scattered by 1 %", 0.01 * scatter_of(report));
   }
   return text;
 }
@@ -283,8 +292,10 @@ const Description<StabilityReport>& stability_description() {
           .always("periodic", "", "a flight that repeats with the wingbeat was found",
                   [](const R& r) { return r.result.periodic.has_value(); })
           .always("periodic_detail", "", "why not, else empty", [](const R& r) { return r.result.periodic_detail; })
-          .parts("sensitivities", "with --sensitivity, the largest first", sensitivity_description(),
-                 &R::sensitivities);
+          .parts("sensitivities", "with --sensitivity, the largest first", sensitivity_description(), &R::sensitivities)
+          .always("scatter_per_s", "1/s",
+                  "standard deviation of that real part over the relative one of all parameters, to first order",
+                  &scatter_of);
   return description;
 }
 

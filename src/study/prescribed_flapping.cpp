@@ -9,6 +9,7 @@
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/root.hpp"
+#include "wingbeat/flight/body_loads.hpp"
 #include "wingbeat/parts/coefficient_sets.hpp"
 
 namespace wingbeat {
@@ -130,6 +131,46 @@ PrescribedLoads prescribed_loads(const PrescribedWings& wings, const PrescribedF
   loads.power_damping = mean[5];
   loads.power = mean[3] + mean[4] + mean[5];
   return loads;
+}
+
+PrescribedFlightLoads prescribed_flight_loads(const PrescribedWings& wings, const Planform<double>& planform,
+                                              double count, const PrescribedFlapping& flapping, double speed,
+                                              double stroke_plane_tilt) {
+  check_frequency(flapping.frequency);
+  constexpr int points = 4000;
+  const auto flow = std::make_shared<OnsetFlow>();
+  for (const double side : {1.0, -1.0}) {
+    WingMount mount;
+    mount.side = side, mount.share = 0.5, mount.tilt = stroke_plane_tilt;
+    flow->mounts[flow->count++] = mount;
+  }
+  flow->velocity = {speed, 0.0, 0.0};
+  Vehicle<double> vehicle{};
+  vehicle.wings = wings.blades;
+  vehicle.wings.wake.strips = wake_strips(planform, count, 1.0);
+  vehicle.wings.flow = flow;
+  vehicle.pitch = wings.pitching;
+  vehicle.pitch.pitch_inertia = 1.0;  // wings that pitch, though by what is stated
+  vehicle.pitch.air = {};
+  PrescribedFlightLoads mean;
+  for (int n = 0; n < points; ++n) {
+    const double time = (n + 0.5) / (points * flapping.frequency);
+    const AngleMotion stroke = motion_of(flapping.stroke, flapping.frequency, time);
+    const AngleMotion pitch = motion_of(flapping.pitch, flapping.frequency, time);
+    FullState<double> at{};
+    at.configuration.stroke_angle = stroke.value;
+    at.pitch_angle = pitch.value, at.pitch_velocity = pitch.velocity;
+    PitchMotion<double> moves{};
+    moves.stroke_velocity = stroke.velocity;
+    Mode<double> mode;
+    mode.stroke = sign_of(stroke.velocity), mode.turn = sign_of(pitch.velocity);
+    const BodyLoads loads = wing_loads_on_body(vehicle, at, moves, mode);
+    const PitchState<double> state = pitch_state(pitch.value, pitch.velocity, stroke.velocity, 1.0, stroke.value);
+    mean.thrust += loads.force[0] / points;
+    mean.lift -= loads.force[2] / points;
+    mean.power += aero_loads(vehicle.wings, vehicle.pitch, state, mode.stroke, mode.turn).power / points;
+  }
+  return mean;
 }
 
 }  // namespace wingbeat

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <map>
+#include <tuple>
 #include <type_traits>
 
 #include "study/residual_fit.hpp"
@@ -159,6 +160,30 @@ std::vector<ValidationStage> stages_of(const ValidationSet& set, const Prescribe
   }
   bare.insert(bare.end(), std::make_move_iterator(fitted.begin()), std::make_move_iterator(fitted.end()));
   return bare;
+}
+
+std::vector<ValidationStage> stages_of(const ValidationSet& set, const PrescribedFlightProblem& problem) {
+  std::vector<ValidationStage> stages;
+  for (const auto& [name, coefficients, rotation] :
+       {std::tuple{"translational-2022, translation", "translational-2022", false},
+        {"translational-2022 with rotational lift and damping", "translational-2022", true},
+        {"robobee, translation", "robobee", false},
+        {"normal-force-robofly, translation", "normal-force-robofly", false}}) {
+    const PrescribedWings wings =
+        prescribed_wings(problem.planform, problem.count, problem.air_density, coefficients, rotation, false);
+    const PrescribedFlightLoads mean = prescribed_flight_loads(wings, problem.planform, problem.count, problem.motion,
+                                                               problem.speed, problem.stroke_plane_tilt);
+    const auto computed = [&](const std::vector<FreeParameter>&, const Numbers&) {
+      Numbers all;
+      for (const auto member : problem.gives) all.push_back(mean.*member);
+      return all;
+    };
+    for (ValidationStage& stage : stages_by_residuals(set, {}, computed)) {
+      stage.variant = name;
+      stages.push_back(std::move(stage));
+    }
+  }
+  return stages;
 }
 
 // ---- steady flapping over voltage and frequency

@@ -74,6 +74,19 @@ struct PrescribedLoads {
 /// about 1e-12 for motions of a few harmonics. Throws ParameterError for a frequency that is not > 0.
 PrescribedLoads prescribed_loads(const PrescribedWings& wings, const PrescribedFlapping& flapping);
 
+/// Means over a wing beat of all wings on a body that flies steadily, horizontally ahead.
+struct PrescribedFlightLoads {
+  double thrust = 0.0;  ///< ahead [N]
+  double lift = 0.0;    ///< upwards, against gravity [N]
+  double power = 0.0;   ///< what the wings give to the air about stroke and pitch axis [W]
+};
+
+/// The means at that speed [m/s], the stroke plane tilted nose up [rad], by the strips of model.md section 18, without
+/// added mass; by 4000 points over the beat. Of forces normal to the chord.
+PrescribedFlightLoads prescribed_flight_loads(const PrescribedWings& wings, const Planform<double>& planform,
+                                              double count, const PrescribedFlapping& flapping, double speed,
+                                              double stroke_plane_tilt);
+
 /// Passive pitching under a stated stroke.
 struct PassivePitch {
   bool settled = false;            ///< the pitching repeats with the wing beat; all else is absent where it does not

@@ -18,23 +18,21 @@ namespace wingbeat {
 
 /// What computes the numbers to be compared.
 enum class ValidationModel {
-  none,           ///< nothing can be predicted
-  prescribed,     ///< mean lift along a stated stroke and pitch
-  bench,          ///< a metric of steady flapping over voltage, or over voltage and frequency
-  passive_pitch,  ///< pitch under a stated stroke
-  ratios,         ///< exponents and ratios of a vehicle near hover
-  maps,           ///< lift and moments over what commands the drives
-  resistance      ///< a battery's resistance, one number at every frequency
+  none,               ///< nothing can be predicted
+  prescribed,         ///< mean lift along a stated stroke and pitch
+  bench,              ///< a metric of steady flapping over voltage, or over voltage and frequency
+  passive_pitch,      ///< pitch under a stated stroke
+  ratios,             ///< exponents and ratios of a vehicle near hover
+  prescribed_flight,  ///< mean loads along a stated stroke and pitch in forward flight
+  maps,               ///< lift and moments over what commands the drives
+  resistance          ///< a battery's resistance, one number at every frequency
 };
 template <>
 inline constexpr std::pair<const char*, ValidationModel> names_of<ValidationModel>[] = {
-    {"none", ValidationModel::none},
-    {"prescribed", ValidationModel::prescribed},
-    {"bench", ValidationModel::bench},
-    {"passive-pitch", ValidationModel::passive_pitch},
-    {"ratios", ValidationModel::ratios},
-    {"maps", ValidationModel::maps},
-    {"resistance", ValidationModel::resistance}};
+    {"none", ValidationModel::none},     {"prescribed", ValidationModel::prescribed},
+    {"bench", ValidationModel::bench},   {"passive-pitch", ValidationModel::passive_pitch},
+    {"ratios", ValidationModel::ratios}, {"prescribed-flight", ValidationModel::prescribed_flight},
+    {"maps", ValidationModel::maps},     {"resistance", ValidationModel::resistance}};
 
 /// Which rows a fit may see.
 enum class ValidationSplit {
@@ -69,6 +67,16 @@ struct PrescribedProblem {
   double air_density = absent;  ///< [kg/m3]
   std::vector<PrescribedFlapping> motions;
   double unit = 1.0;  ///< [N]
+};
+/// Wings along one motion in steady flight ahead; each point is one of these.
+struct PrescribedFlightProblem {
+  Planform<double> planform;
+  double count = 2.0;
+  double air_density = absent;  ///< [kg/m3]
+  PrescribedFlapping motion;
+  double speed = 0.0;              ///< [m/s]
+  double stroke_plane_tilt = 0.0;  ///< nose up [rad]
+  std::vector<double PrescribedFlightLoads::*> gives;
 };
 struct BenchProblem {
   Design<double> design;
@@ -113,7 +121,7 @@ struct MapsProblem {
 struct ResistanceProblem {};
 
 using ValidationProblem = std::variant<std::monostate, PrescribedProblem, BenchProblem, PassivePitchProblem,
-                                       RatiosProblem, MapsProblem, ResistanceProblem>;
+                                       RatiosProblem, MapsProblem, ResistanceProblem, PrescribedFlightProblem>;
 
 /// A measured set and what is to be computed of it.
 struct ValidationSet {
