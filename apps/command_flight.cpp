@@ -92,11 +92,11 @@ int run_stability(const FlightArguments& a) {
   std::optional<OutputFile> plot;
   if (format) plot.emplace("--plot", a.plot, OutputRules{plot_extensions, a.force});
   AveragedFlight flight(vehicle);
-  const TrimResult at = trim(flight, condition);
+  const TrimResult steady = trim(flight, condition);
   StabilityReport report{title_of(a, vehicle), {}, {}};
-  const bool flies = at.status == TrimStatus::trimmed || at.status == TrimStatus::beyond_controls;
-  if (flies) report.result = flight_stability(flight, at);
-  else report.result.trim = at;
+  const bool flies = steady.status == TrimStatus::trimmed || steady.status == TrimStatus::beyond_controls;
+  if (flies) report.result = flight_stability(flight, steady);
+  else report.result.trim = steady;
   if (flies && a.sensitivity) report.sensitivities = mode_sensitivities(design, condition);
   if (plot && report.result.model) {
     plot_stability(report, *format, plot->temporary());

@@ -39,8 +39,8 @@ std::vector<TimeModel> models_of(const FlightVehicle& vehicle) {
   return models;
 }
 
-StrokeOnBody stroke_of(const FullState<double>& at, const PitchMotion<double>& m) {
-  return {at.configuration.stroke_angle, m.stroke_velocity, m.stroke_acceleration, 0.0};
+StrokeOnBody stroke_of(const FullState<double>& instant, const PitchMotion<double>& m) {
+  return {instant.configuration.stroke_angle, m.stroke_velocity, m.stroke_acceleration, 0.0};
 }
 
 }  // namespace

@@ -76,17 +76,17 @@ class FlightMap {
   double period(const VectorXd& z) const { return crank_ ? z[0] : period_; }
 
   /// Drives, one after the other, of a crank with the period in the place of its angle, then the body.
-  VectorXd start(const TrimResult& at) {
+  VectorXd start(const TrimResult& steady) {
     VectorXd z(count());
     Eigen::Index next = 0;
     for (std::size_t n = 0; n < indices_.size(); ++n) {
-      const DriveCycle& cycle = at.flight->cycles[n];
+      const DriveCycle& cycle = steady.flight->cycles[n];
       indices_[n].unknowns(cycle.start, z.data() + next);
       angle_ = cycle.start.angle;
       if (crank_) z[next] = cycle.period;
       next += Eigen::Index(indices_[n].count);
     }
-    z.tail<8>() = states_of(steady_body(at.condition, at.roll, at.pitch));
+    z.tail<8>() = states_of(steady_body(steady.condition, steady.roll, steady.pitch));
     return z;
   }
   /// End less start; of a crank its angle less a turn in the place of the period.
@@ -156,8 +156,8 @@ VectorXd sizes_for(const FlightMap& map, const VectorXd& z, const FlightVector& 
 /// Newton's method for the flight at some controls; slopes that are known serve as long as they do.
 class PeriodicSearch {
  public:
-  PeriodicSearch(const FlightVehicle& vehicle, const TrimResult& at, const FlightVector& steps, double tolerance)
-      : map_(vehicle, at.controls, tolerance), steps_(steps), tolerance_(tolerance), z_(map_.start(at)) {}
+  PeriodicSearch(const FlightVehicle& vehicle, const TrimResult& steady, const FlightVector& steps, double tolerance)
+      : map_(vehicle, steady.controls, tolerance), steps_(steps), tolerance_(tolerance), z_(map_.start(steady)) {}
 
   void command(const FlightControls& controls) { map_.command(controls); }
 
@@ -242,7 +242,7 @@ MatrixXd speed_slopes(const FlightVehicle& vehicle, const FlightLinearModel& mod
 
 }  // namespace
 
-std::optional<PeriodicFlight> periodic_flight(const FlightVehicle& vehicle, const TrimResult& at,
+std::optional<PeriodicFlight> periodic_flight(const FlightVehicle& vehicle, const TrimResult& steady,
                                               const FlightLinearModel& model, const FlightVector& steps,
                                               double tolerance, std::string& detail) {
   if (!vehicle.direct && vehicle.drives.size() > 1) {
@@ -251,13 +251,13 @@ std::optional<PeriodicFlight> periodic_flight(const FlightVehicle& vehicle, cons
   }
   try {
     constexpr int max_corrections = 12;
-    PeriodicSearch search(vehicle, at, steps, tolerance);
+    PeriodicSearch search(vehicle, steady, steps, tolerance);
     std::vector<FlightControl> controls;
-    const FlightVector trimmed = states_of(steady_body(at.condition, at.roll, at.pitch));
+    const FlightVector trimmed = states_of(steady_body(steady.condition, steady.roll, steady.pitch));
     const MatrixXd slopes = speed_slopes(vehicle, model, trimmed, controls);
-    const Eigen::Vector2d wanted(at.condition.speed, -at.condition.climb);
+    const Eigen::Vector2d wanted(steady.condition.speed, -steady.condition.climb);
     PeriodicFlight flight;
-    flight.controls = at.controls;
+    flight.controls = steady.controls;
     for (int correction = 0; correction < max_corrections; ++correction) {
       if (!search.solve()) {
         detail = "no flight that repeats with the wingbeat was found near the trim";

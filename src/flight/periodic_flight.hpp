@@ -17,7 +17,7 @@ std::string shape_of(const Eigen::VectorXcd& motion, const FlightVector& steps, 
 /// The flight near a trim that repeats with the wingbeat and moves, in the mean, as the trim's condition has it:
 /// voltage and the control of pitch follow, by the slopes of the averaged model. None, with the reason in `detail`,
 /// where there is none. `steps`: small changes of the states.
-std::optional<PeriodicFlight> periodic_flight(const FlightVehicle& vehicle, const TrimResult& at,
+std::optional<PeriodicFlight> periodic_flight(const FlightVehicle& vehicle, const TrimResult& steady,
                                               const FlightLinearModel& model, const FlightVector& steps,
                                               double tolerance, std::string& detail);
 

@@ -29,9 +29,9 @@ FlightVector rates_under(const Body& body, const FlightVector& x, const BodyLoad
 }
 
 /// Steps of differences, small beside the tip's speed.
-FlightVector steps_of(const AveragedFlight& flight, const TrimResult& at) {
+FlightVector steps_of(const AveragedFlight& flight, const TrimResult& steady) {
   const double R = flight.vehicle().drives[0].vehicle.wings.wake.strips.at.back().radius;
-  const double rate = two_pi * at.frequency, speed = rate * R;
+  const double rate = two_pi * steady.frequency, speed = rate * R;
   FlightVector steps;
   steps << FlightVector::Constant(1e-3);
   steps.head<3>() *= speed;
@@ -120,10 +120,11 @@ Complex least_stable(const FlightMatrix& A) {
 
 }  // namespace
 
-std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const TrimResult& at) {
-  if (!at.flight) return std::nullopt;
+std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const TrimResult& steady) {
+  if (!steady.flight) return std::nullopt;
   const Body& body = flight.vehicle().body;
-  const FlightVector trimmed = states_of(steady_body(at.condition, at.roll, at.pitch)), steps = steps_of(flight, at);
+  const FlightVector trimmed = states_of(steady_body(steady.condition, steady.roll, steady.pitch)),
+                     steps = steps_of(flight, steady);
   FlightLinearModel model;
   const auto rates_at = [&](const FlightVector& x, const FlightControls& controls) -> std::optional<FlightVector> {
     const std::optional<MeanFlight> mean = flight.at(controls, motion_of(body_of(x)));
@@ -135,10 +136,10 @@ std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const Tri
     above[k] += steps[k], below[k] -= steps[k];
     std::optional<FlightVector> high, low;
     if (k < 6) {
-      high = rates_at(above, at.controls), low = rates_at(below, at.controls);
+      high = rates_at(above, steady.controls), low = rates_at(below, steady.controls);
     } else {
       // Attitude turns gravity alone.
-      high = rates_under(body, above, at.flight->loads), low = rates_under(body, below, at.flight->loads);
+      high = rates_under(body, above, steady.flight->loads), low = rates_under(body, below, steady.flight->loads);
     }
     if (!high || !low) return std::nullopt;
     model.A.col(k) = (*high - *low) / (2.0 * steps[k]);
@@ -150,7 +151,7 @@ std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const Tri
   for (std::size_t k = 0; k < model.controls.size(); ++k) {
     const ControlRange& range = flight.vehicle().ranges[std::size_t(model.controls[k])];
     const double step = 2e-3 * (range.high - range.low);
-    FlightControls above = at.controls, below = at.controls;
+    FlightControls above = steady.controls, below = steady.controls;
     above[model.controls[k]] += step, below[model.controls[k]] -= step;
     const std::optional<FlightVector> high = rates_at(trimmed, above), low = rates_at(trimmed, below);
     if (!high || !low) return std::nullopt;
@@ -159,16 +160,16 @@ std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const Tri
   return model;
 }
 
-StabilityResult flight_stability(AveragedFlight& flight, const TrimResult& at) {
+StabilityResult flight_stability(AveragedFlight& flight, const TrimResult& steady) {
   StabilityResult result;
-  result.trim = at;
-  result.model = linear_flight(flight, at);
+  result.trim = steady;
+  result.model = linear_flight(flight, steady);
   if (!result.model) {
     result.periodic_detail = "the vehicle does not flap beside the trim";
     return result;
   }
-  const FlightVector steps = steps_of(flight, at);
-  result.periodic = detail::periodic_flight(flight.vehicle(), at, *result.model, steps, flight.options().tolerance,
+  const FlightVector steps = steps_of(flight, steady);
+  result.periodic = detail::periodic_flight(flight.vehicle(), steady, *result.model, steps, flight.options().tolerance,
                                             result.periodic_detail);
   for (const bool longitudinal : {true, false}) add_modes(longitudinal, steps, result);
   std::stable_sort(result.modes.begin(), result.modes.end(),
@@ -195,9 +196,9 @@ std::vector<ModeSensitivity> mode_sensitivities(const Design<double>& design, co
     try {
       validate(changed);
       AveragedFlight flight(flight_vehicle(changed), options.cycle);
-      const TrimResult at = trim(flight, condition, options, &near);
-      if (at.status != TrimStatus::trimmed && at.status != TrimStatus::beyond_controls) return std::nullopt;
-      const std::optional<FlightLinearModel> model = linear_flight(flight, at);
+      const TrimResult steady = trim(flight, condition, options, &near);
+      if (steady.status != TrimStatus::trimmed && steady.status != TrimStatus::beyond_controls) return std::nullopt;
+      const std::optional<FlightLinearModel> model = linear_flight(flight, steady);
       if (!model) return std::nullopt;
       return least_stable(model->A);
     } catch (const ParameterError&) {

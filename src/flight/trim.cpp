@@ -98,24 +98,24 @@ class TrimProblem {
     if (!near) x[0] = lifting_voltage(vehicle_);
     return x;
   }
-  void place(const VectorXd& x, TrimResult& at) const {
-    at.roll = at.pitch = 0.0;
-    at.controls = {};
+  void place(const VectorXd& x, TrimResult& result) const {
+    result.roll = result.pitch = 0.0;
+    result.controls = {};
     for (Eigen::Index n = 0; n < count(); ++n) {
       const Unknown& u = unknowns_[std::size_t(n)];
-      if (u.kind == Unknown::Kind::pitch) at.pitch = x[n];
-      else if (u.kind == Unknown::Kind::roll) at.roll = x[n];
-      else at.controls[u.control] = x[n];
+      if (u.kind == Unknown::Kind::pitch) result.pitch = x[n];
+      else if (u.kind == Unknown::Kind::roll) result.roll = x[n];
+      else result.controls[u.control] = x[n];
     }
   }
   /// All six accelerations, scaled; none where the vehicle does not flap.
-  std::optional<VectorXd> accelerations(const VectorXd& x, TrimResult& at) const {
-    place(x, at);
-    const BodyState body = steady_body(condition_, at.roll, at.pitch);
-    at.flight = flight_.at(at.controls, motion_of(body));
-    if (!at.flight) return std::nullopt;
-    const MeanAcceleration a = mean_acceleration(vehicle_.body, body, at.flight->loads);
-    at.acceleration = a.linear, at.angular_acceleration = a.angular;
+  std::optional<VectorXd> accelerations(const VectorXd& x, TrimResult& result) const {
+    place(x, result);
+    const BodyState body = steady_body(condition_, result.roll, result.pitch);
+    result.flight = flight_.at(result.controls, motion_of(body));
+    if (!result.flight) return std::nullopt;
+    const MeanAcceleration a = mean_acceleration(vehicle_.body, body, result.flight->loads);
+    result.acceleration = a.linear, result.angular_acceleration = a.angular;
     const double arm = flight_.vehicle().drives[0].vehicle.wings.wake.strips.at.back().radius;
     const double per_moment = 1.0 / (vehicle_.body.mass * standard_gravity * arm);
     const Triple M = inertia_times(vehicle_.body, a.angular);

@@ -183,14 +183,14 @@ TEST(Stability, ParametersMoveTheLeastStableMode) {
   const std::vector<ModeSensitivity> all =
       mode_sensitivities(d, {}, {}, {"body.inertia_pitch", "body.shoulder_above", "wing.inertia"});
   ASSERT_EQ(all.size(), 3u);
-  const auto of = [&](std::string_view key) {
+  const auto slope_by = [&](std::string_view key) {
     for (const ModeSensitivity& s : all) {
       if (s.parameter == key) return s.slope;
     }
     return absent;
   };
-  EXPECT_TRUE(std::isfinite(of("body.inertia_pitch")));
-  EXPECT_LT(of("body.inertia_pitch"), 0.0);  // heavier to turn: slower to diverge
+  EXPECT_TRUE(std::isfinite(slope_by("body.inertia_pitch")));
+  EXPECT_LT(slope_by("body.inertia_pitch"), 0.0);  // heavier to turn: slower to diverge
 }
 
 }  // namespace

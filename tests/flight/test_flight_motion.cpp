@@ -30,10 +30,10 @@ TEST(FlightMotion, FallsAsGravityHasIt) {
   thrown.rates = {3.0, 0.0, 0.0};
   flight.start(thrown);
   ASSERT_TRUE(flight.step_to(0.8));
-  const Triple at = flight.state().body.position;
-  EXPECT_NEAR(at[0], 0.8, 1e-9);
-  EXPECT_NEAR(at[1], 0.4, 1e-9);
-  EXPECT_NEAR(at[2], 0.5 * g * 0.64 - 1.6, 1e-9);
+  const Triple place = flight.state().body.position;
+  EXPECT_NEAR(place[0], 0.8, 1e-9);
+  EXPECT_NEAR(place[1], 0.4, 1e-9);
+  EXPECT_NEAR(place[2], 0.5 * g * 0.64 - 1.6, 1e-9);
   EXPECT_NEAR(euler_angles(flight.state().body.attitude)[0], 2.4, 1e-9);
 }
 

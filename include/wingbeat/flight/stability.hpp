@@ -61,10 +61,10 @@ struct StabilityResult {
 };
 
 /// The averaged linear model about a trim that has a flight; none where the vehicle does not flap beside it.
-std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const TrimResult& at);
+std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const TrimResult& steady);
 
 /// Modes by both ways.
-StabilityResult flight_stability(AveragedFlight& flight, const TrimResult& at);
+StabilityResult flight_stability(AveragedFlight& flight, const TrimResult& steady);
 
 /// Of the eigenvalue with the largest real part.
 struct ModeSensitivity {

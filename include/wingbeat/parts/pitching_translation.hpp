@@ -326,13 +326,13 @@ ChordwiseForce<S> add_strips_in_flow(const BladeElement<S>& w, const PitchingWin
     const S down = drift.w0 + drift.w1 * r - w.wake.velocity;
     const S square_of_speed = square(u) + square(down) + S(1e-300), speed = sqrt(square_of_speed);
     const S sine2 = square(down) / square_of_speed;
-    const StripAngle<S> at = strip_angle(p, u, down, speed, sin_psi, state.cos_psi, own_stroke);
-    const S& angle = at.angle;
+    const StripAngle<S> flow = strip_angle(p, u, down, speed, sin_psi, state.cos_psi, own_stroke);
+    const S& angle = flow.angle;
     const S closeness = S(1.0) + (state.clap - S(1.0)) * (S(1.0) - sine2);
     const S pressure = S(0.5) * w.air_density * S(mount.share) * square_of_speed * strip.area * closeness;
     // Of the wing `own_stroke`, of the vehicle's angles `sense` times that.
-    const S C_N = at.known ? normal_force_coefficient(w, p, angle) : normal_force_of(p.coefficient, at.sine);
-    const S place = at.known ? centre_of_pressure(p, angle) : centre_of_pressure_of(at.cosine);
+    const S C_N = flow.known ? normal_force_coefficient(w, p, angle) : normal_force_of(p.coefficient, flow.sine);
+    const S place = flow.known ? centre_of_pressure(p, angle) : centre_of_pressure_of(flow.cosine);
     const S force = stroke * pressure * (C_N - even * sine2);
     sum.normal = sum.normal + force;
     sum.stroke_moment = sum.stroke_moment + force * r;

@@ -877,6 +877,190 @@ class BenchSection(Section):
         [N m/A] Range: > 0. Default: none.
         """
 
+class BodyTailSection(Section):
+    @property
+    def area(self) -> Quantity | None:
+        """flat plate, horizontal.
+        [m2] Range: > 0. Default: none.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def behind(self) -> Quantity | None:
+        """its centre behind the centre of mass.
+        [m] Range: any. Default: 0 m.
+        Only with body.tail.area.
+        """
+    @property
+    def below(self) -> Quantity | None:
+        """its centre below the centre of mass.
+        [m] Range: any. Default: 0 m.
+        Only with body.tail.area.
+        """
+    @property
+    def coefficient(self) -> Quantity | None:
+        """force normal to the plate over sin(angle of attack).
+        Number. Range: > 0. Default: 2.
+        Only with body.tail.area.
+        """
+
+class BodyFinSection(Section):
+    @property
+    def area(self) -> Quantity | None:
+        """flat plate, upright.
+        [m2] Range: > 0. Default: none.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def behind(self) -> Quantity | None:
+        """its centre behind the centre of mass.
+        [m] Range: any. Default: 0 m.
+        Only with body.fin.area.
+        """
+    @property
+    def below(self) -> Quantity | None:
+        """its centre below the centre of mass.
+        [m] Range: any. Default: 0 m.
+        Only with body.fin.area.
+        """
+    @property
+    def coefficient(self) -> Quantity | None:
+        """force normal to the plate over sin(angle of attack).
+        Number. Range: > 0. Default: 2.
+        Only with body.fin.area.
+        """
+
+class BodyControlSection(Section):
+    @property
+    def mean_stroke_angle(self) -> Quantity | None:
+        """largest deflection, to either side, of the mean stroke angle.
+        [rad] Range: > 0. Default: none: fixed.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def stroke_plane_difference(self) -> Quantity | None:
+        """largest tilt of the stroke planes, right nose up, left nose down.
+        [rad] Range: > 0. Default: none: fixed.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def incidence_difference(self) -> Quantity | None:
+        """largest turn of the pitch of the wings, right up, left down.
+        [rad] Range: > 0. Default: none: fixed.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def voltage_max(self) -> Quantity | None:
+        """largest voltage, or amplitude, of a drive.
+        [V] Range: > 0. Default: none.
+        Only with body.inertia_pitch.
+        """
+
+class BodySection(Section):
+    @property
+    def inertia_pitch(self) -> Quantity | None:
+        """I_yy, y to the right; given, with the other two, the vehicle can fly: trim, stability, fly.
+        [kg m2] Range: > 0. Default: none: no flight.
+        """
+    @property
+    def inertia_roll(self) -> Quantity | None:
+        """I_xx, moment of inertia of the whole vehicle about its centre of mass, x forward.
+        [kg m2] Range: > 0. Default: required.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def inertia_yaw(self) -> Quantity | None:
+        """I_zz, z down.
+        [kg m2] Range: > 0. Default: required.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def inertia_product(self) -> Quantity | None:
+        """I_xz, integral of x z dm.
+        [kg m2] Range: any. Default: 0 kg m2.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def shoulder_ahead(self) -> Quantity | None:
+        """stroke axes ahead of the centre of mass.
+        [m] Range: any. Default: 0 m.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def shoulder_aside(self) -> Quantity | None:
+        """stroke axis of either side from the middle plane.
+        [m] Range: >= 0. Default: 0 m.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def shoulder_above(self) -> Quantity | None:
+        """stroke planes above the centre of mass.
+        [m] Range: any. Default: 0 m.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def stroke_plane_tilt(self) -> Quantity | None:
+        """stroke planes against the body, nose up.
+        [rad] Range: any. Default: 0 rad.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def mean_stroke_angle(self) -> Quantity | None:
+        """of the span at stroke angle 0, forwards.
+        [rad] Range: any. Default: 0 rad.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def opposed(self) -> bool:
+        """of each two wings on one side, one flaps against the other.
+        Range: true or false. Default: false.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def wing_mass(self) -> Quantity | None:
+        """mass of one wing; given, the inertia of the flapping acts on the body.
+        [kg] Range: > 0. Default: none: wings without mass to the body.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def wing_centre(self) -> Quantity | None:
+        """centre of mass of a wing from its stroke axis.
+        [m] Range: > 0. Default: required.
+        Only with body.wing_mass.
+        """
+    @property
+    def drag_area_forward(self) -> Quantity | None:
+        """C_D A of the body that moves along x.
+        [m2] Range: >= 0. Default: 0 m2.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def drag_area_sideways(self) -> Quantity | None:
+        """C_D A along y.
+        [m2] Range: >= 0. Default: 0 m2.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def drag_area_vertical(self) -> Quantity | None:
+        """C_D A along z.
+        [m2] Range: >= 0. Default: 0 m2.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def drag_below(self) -> Quantity | None:
+        """where that drag acts, below the centre of mass.
+        [m] Range: any. Default: 0 m.
+        Only with body.inertia_pitch.
+        """
+    @property
+    def tail(self) -> BodyTailSection:
+        """The section [body.tail]."""
+    @property
+    def fin(self) -> BodyFinSection:
+        """The section [body.fin]."""
+    @property
+    def control(self) -> BodyControlSection:
+        """The section [body.control]."""
+
 class Sections:
     @property
     def vehicle(self) -> VehicleSection:
@@ -914,5 +1098,8 @@ class Sections:
     @property
     def bench(self) -> BenchSection:
         """The section [bench]."""
+    @property
+    def body(self) -> BodySection:
+        """The section [body]."""
 
 sections: dict[str, type[Section]]
