@@ -195,7 +195,7 @@ TEST_F(CommandLine, FilesThatComeWithTheProgramAreFoundByName) {
   EXPECT_EQ(near.err,
             "wingbeat: friction2023: no such file, and no design of that name comes with the program; did you "
             "mean friction2022?\n");
-  EXPECT_THAT(shell("wingbeat run pigeon").err, HasSubstr("its designs are direct-drive, friction2022, "));
+  EXPECT_THAT(shell("wingbeat run pigeon").err, HasSubstr("its designs are direct-drive, flight-friction2022, "));
   EXPECT_THAT(shell("wingbeat sweep crank-radios -o x.nc").err, HasSubstr("did you mean crank-radius?"));
   EXPECT_THAT(shell("wingbeat run ./friction2022").err, HasSubstr("./friction2022: no such file"));
   // One's own file of that name goes first.

@@ -53,6 +53,7 @@ std::vector<Design<double>> designs_of_every_kind() {
         d.wing.areal_density = 0.02;
         d.aerodynamics.induced_velocity = 0.5;
         d.aerodynamics.clap.amplitude = 0.3;
+        d.body.inertia_pitch = 1e-6, d.body.wing_mass = 1e-5, d.body.tail.area = d.body.fin.area = 1e-4;
         if (transmission == TransmissionType::direct) d.pitch.stiffness = 3e-4;
         designs.push_back(d);
         Design<double> tabulated = d;
@@ -206,7 +207,7 @@ TEST(Parameters, NearestKey) {
             "unknown key; [spring] knows stiffness, resonance, resonance_ratio, rest_angle, mass");
   EXPECT_EQ(unknown_key_message("battery"),
             "unknown key; the sections are [vehicle], [supply], [motor], [electronics], [piezo], [transmission], "
-            "[friction], [spring], [wing], [pitch], [aerodynamics], [bench]");
+            "[friction], [spring], [wing], [pitch], [aerodynamics], [bench], [body]");
 }
 
 }  // namespace

@@ -284,7 +284,7 @@ TEST(Overrides, NameThemselvesInErrors) {
   EXPECT_EQ(override_refusal("nonsense"), "--set nonsense: expected KEY=VALUE, as in --set supply.voltage=\"3 V\"");
   EXPECT_EQ(override_refusal("=1"),
             "--set =1: unknown key; the sections are [vehicle], [supply], [motor], [electronics], [piezo], "
-            "[transmission], [friction], [spring], [wing], [pitch], [aerodynamics], [bench]");
+            "[transmission], [friction], [spring], [wing], [pitch], [aerodynamics], [bench], [body]");
   EXPECT_EQ(override_refusal("supply.voltage=1\nmotor.inertia=2"),
             "--set supply.voltage=1\\nmotor.inertia=2: neither a TOML value nor one line of plain UTF-8 text");
   EXPECT_THAT(override_refusal("vehicle.name=\xff"),

@@ -162,7 +162,7 @@ class Completions:
     def test_files_by_extension(self):
         files = ["flapper.toml", "results/", "two words.toml"]
         self.assertEqual(self.complete("wingbeat run "), sorted(files + DESIGNS))
-        self.assertEqual(self.complete("wingbeat run fl"), ["flapper.toml"])
+        self.assertEqual(self.complete("wingbeat run fla"), ["flapper.toml"])
         self.assertEqual(self.complete("wingbeat run x --plot "), ["cycle.svg", "results/"])
         self.assertEqual(self.complete("wingbeat sweep x -o "), ["results/", "sweep.nc"])
         self.assertEqual(self.complete("wingbeat reproduce friction2022 -o "), ["results/"])
@@ -210,7 +210,7 @@ class Bash(Completions, unittest.TestCase):
                       f"source '{self.script}'; echo rea''dy\n")
         terminal.read_until("ready\r\n")
         for typed, given in [
-            ("wingbeat ru\tfl\t--cond\tvac\t\n", "<run><flapper.toml><--condition><vacuum>"),
+            ("wingbeat ru\tfla\t--cond\tvac\t\n", "<run><flapper.toml><--condition><vacuum>"),
             ("wingbeat sweep two\\ w\t-o res\tx.nc\n", "<sweep><two words.toml><-o><results/x.nc>"),
             ("wingbeat run x --set motor.armature_i\t1e-4 --plot=cy\t\n",
              "<run><x><--set><motor.armature_inductance=1e-4><--plot=cycle.svg>"),
