@@ -57,8 +57,7 @@ def mjcf_of(vehicle: Vehicle, timestep: float = 1e-4) -> str:
     """The model as a text."""
     found = _core.flight_vehicle(vehicle._design)
     roll, pitch, yaw, product = found["inertia"]
-    # I_xz of the vehicle is the integral of x z dm; the element of the matrix is its negative, in both systems of axes:
-    # y and z change their signs together, and with them x z.
+    # The element xz of the matrix is -(integral of x z dm), and z changes its sign between the axes.
     inertia = _text(roll, pitch, yaw, 0.0, product, 0.0)
     radius = (0.4 * 2.5 * min(roll, pitch, yaw) / found["mass"]) ** 0.5
     lines = [
