@@ -232,6 +232,9 @@ py::list columns_of(const std::vector<WaveformRow>& rows);
 /// Adds equations of motion and simulations to the module.
 void add_motion(py::module_& m);
 
+/// Adds flights that are stepped, trim and stability.
+void add_flight(py::module_& m);
+
 /// Adds motor curves, force coefficients and kinematics.
 void add_parts(py::module_& m);
 

@@ -359,6 +359,7 @@ PYBIND11_MODULE(_core, m) {
   m.def("energy_balance", &balance);
   m.def("simulate", &start_up);
   add_motion(m);
+  add_flight(m);
   add_parts(m);
   add_studies(m);
   add_optima(m);

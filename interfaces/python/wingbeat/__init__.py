@@ -6,6 +6,8 @@
     result.gradient("lift_mean", ["transmission.crank_radius"])
     vehicle.simulate().time_to_steady
     vehicle.simulation().step_to(0.1)                   # under commanded voltages, for controllers
+    vehicle.trim(speed="1 m/s")                         # steady flight of a vehicle with a body; flight_stability()
+    vehicle.flight_simulation().step_to(0.1)            # in flight, under controls and wind; wb.gym for learning
     vehicle.linearise().discrete.to_scipy()             # for control design
     vehicle.sweep({"supply.voltage": [2, 3, 4]})        # xarray
     wb.solve({"supply.voltage": [2, 3, 4]}, vehicle=vehicle).lift_mean
@@ -27,7 +29,9 @@ from ._ensemble import Ensemble, solve_columns
 from ._equations import EquationsOfMotion
 from ._errors import InputError
 from ._fit import fit
+from ._flight import BodyState, FlightLoads, FlightSimulation, FlightTotals
 from ._linear import ControlModels, LinearModel, linearise
+from ._mjcf import export_mjcf
 from ._optimise import Front, OwnOptimum, optimise
 from ._parts import coefficient_curves, kinematics, motor_curves
 from ._quantity import Quantity
@@ -38,15 +42,21 @@ from ._solve import solve
 from ._studies import Flight, Found, Identification, StudyResult, endurance, identify_motor, tolerance
 from ._sweep import open_dataset, sweep
 from ._tables import Metric, Parameter, metrics, parameters
+from ._trim import FlightStability, Trim, flight_stability, trim
 from ._vehicle import Vehicle, read, shipped
 
 __all__ = [
+    "BodyState",
     "ControlModels",
     "EnergyBalance",
     "Ensemble",
     "EquationsOfMotion",
     "Event",
     "Flight",
+    "FlightLoads",
+    "FlightSimulation",
+    "FlightStability",
+    "FlightTotals",
     "Found",
     "Front",
     "Identification",
@@ -62,11 +72,14 @@ __all__ = [
     "SimulationState",
     "StartUp",
     "StudyResult",
+    "Trim",
     "Vehicle",
     "__version__",
     "coefficient_curves",
     "endurance",
+    "export_mjcf",
     "fit",
+    "flight_stability",
     "identify_motor",
     "kinematics",
     "linearise",
@@ -82,19 +95,22 @@ __all__ = [
     "solve_columns",
     "sweep",
     "tolerance",
+    "trim",
 ]
 
 if TYPE_CHECKING:
+    from . import gym as gym
     from . import plot as plot
     from ._accessor import SweepData as SweepData
 else:
 
     def __getattr__(name: str) -> Any:
-        """SweepData, which needs xarray, and `wingbeat.plot`, which needs matplotlib, where they are first asked for."""
+        """SweepData, which needs xarray, `wingbeat.plot`, which needs matplotlib, and `wingbeat.gym`, where they are
+        first asked for."""
         if name == "SweepData":
             from ._accessor import SweepData
 
             return SweepData
-        if name == "plot":
-            return importlib.import_module(".plot", __name__)
+        if name in ("gym", "plot"):
+            return importlib.import_module(f".{name}", __name__)
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ._methods_flight import FlightMethods
 from ._operations import method_of, operations
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
     from ._studies import Flight, Found, StudyResult
 
 
-class VehicleMethods:
+class VehicleMethods(FlightMethods):
     """Methods that are functions of the package."""
 
     __slots__ = ()

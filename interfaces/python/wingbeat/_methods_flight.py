@@ -1,0 +1,82 @@
+"""What a Vehicle does in flight: functions of the package as methods."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+from ._operations import method_of, operations
+
+if TYPE_CHECKING:
+    from ._flight import FlightSimulation
+    from ._trim import FlightStability, Trim
+
+
+class FlightMethods:
+    """Methods that are functions of the package, of vehicles with a body."""
+
+    __slots__ = ()
+
+    @method_of("FlightSimulation")
+    def flight_simulation(
+        self, *, tolerance: float = 1e-7, gravity: float | str = 9.80665, frozen: bool = False
+    ) -> FlightSimulation:
+        """A flight, stepped in time: `wingbeat.FlightSimulation`.
+
+        Examples
+        --------
+        >>> flight = wb.read("flight-friction2022").flight_simulation()
+        >>> flight.step_to("10 ms"), flight.time
+        (True, 0.01)
+        """
+        return operations["FlightSimulation"](  # type: ignore[no-any-return]
+            self, tolerance=tolerance, gravity=gravity, frozen=frozen
+        )
+
+    @method_of("trim")
+    def trim(
+        self, *, speed: float | str = 0.0, climb: float | str = 0.0, turn_rate: float | str = 0.0
+    ) -> Trim:
+        """Controls and attitude of its steady flight: `wingbeat.trim`.
+
+        Examples
+        --------
+        >>> wb.read("flight-friction2022").trim(speed="0.5 m/s").status
+        'trimmed'
+        """
+        return operations["trim"](  # type: ignore[no-any-return]
+            self, speed=speed, climb=climb, turn_rate=turn_rate
+        )
+
+    @method_of("flight_stability")
+    def flight_stability(
+        self,
+        *,
+        speed: float | str = 0.0,
+        climb: float | str = 0.0,
+        turn_rate: float | str = 0.0,
+        sensitivity: bool = False,
+    ) -> FlightStability:
+        """Modes of its steady flight, and the linear model: `wingbeat.flight_stability`.
+
+        Examples
+        --------
+        >>> found = wb.read("flight-friction2022").flight_stability()
+        >>> bool(found.averaged[0].real > 0)
+        True
+        """
+        return operations["flight_stability"](  # type: ignore[no-any-return]
+            self, speed=speed, climb=climb, turn_rate=turn_rate, sensitivity=sensitivity
+        )
+
+    @method_of("export_mjcf")
+    def export_mjcf(self, file: str | os.PathLike[str], *, timestep: float | str = 1e-4, force: bool = False) -> None:
+        """Its body as a model of MuJoCo: `wingbeat.export_mjcf`.
+
+        Examples
+        --------
+        >>> import tempfile
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     wb.read("flight-friction2022").export_mjcf(folder + "/flyer.xml")
+        """
+        operations["export_mjcf"](self, file, timestep=timestep, force=force)

@@ -1,0 +1,244 @@
+"""Steady flight of a vehicle, and small motions about it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from . import _core
+from ._arguments import flag, number
+from ._flight import BodyState, body_of, ranges_of, settings_of
+from ._linear import LinearModel
+from ._operations import operation
+from ._quantity import Quantity
+from ._studies import StudyResult
+from ._vehicle import Vehicle, vehicle_of
+
+if TYPE_CHECKING:
+    import numpy.typing as npt
+
+
+class Trim(StudyResult):
+    """A steady flight: the keys of one of the `flights` of `wingbeat trim --json`.
+
+    Examples
+    --------
+    >>> hover = wb.read("flight-friction2022").trim()
+    >>> hover.status, hover.controls["voltage"].unit
+    ('trimmed', 'V')
+    """
+
+    def __init__(self, found: dict[str, Any], vehicle: Vehicle) -> None:
+        super().__init__(found)
+        self._start = found
+        #: The vehicle.
+        self.vehicle = vehicle
+
+    @property
+    def controls(self) -> dict[str, Quantity]:
+        """The setting of each control that the vehicle has, by name."""
+        return settings_of(self._start["controls"], ranges_of(self.vehicle))
+
+    @property
+    def body(self) -> BodyState:
+        """The body in that flight, at the origin."""
+        return body_of(self._start["body"])
+
+    @property
+    def drives(self) -> npt.NDArray[np.float64]:
+        """The drives at the begin of the cycle that they settle to, as `FlightSimulation.start` takes them; without a
+        row where the vehicle does not flap."""
+        return np.array(self._start["drives"])
+
+
+class FlightStability(StudyResult):
+    """Modes of a steady flight and its linear model: the keys of `wingbeat stability --json`.
+
+    Examples
+    --------
+    >>> found = wb.read("flight-friction2022").flight_stability()
+    >>> found.A.shape, found.trim.status
+    ((8, 8), 'trimmed')
+    """
+
+    def __init__(self, found: dict[str, Any], vehicle: Vehicle) -> None:
+        super().__init__(found)
+        self._trim = Trim({**found, "values": found["values"]["trim"]}, vehicle)
+
+    @property
+    def trim(self) -> Trim:
+        """The steady flight."""
+        return self._trim
+
+    @property
+    def model(self) -> LinearModel:
+        """The averaged linear model in continuous time, from controls to all states.
+
+        Raises
+        ------
+        ValueError
+            Where the vehicle is not in trim.
+        """
+        if not self["A"]:
+            raise ValueError(f"no linear model: {self['trim']['status_detail']}")
+        n, m = len(self["states"]), len(self["controls"])
+        matrices = {"A": self["A"], "B": self["B"], "C": np.eye(n).tolist(), "D": np.zeros((n, m)).tolist()}
+        states = [{"name": name} for name in self["states"]]
+        return LinearModel({**matrices, "states": states}, list(self["controls"]), list(self["states"]), None)
+
+    @property
+    def A(self) -> npt.NDArray[np.float64]:
+        """Of the averaged linear model: states by states."""
+        return self.model.A
+
+    @property
+    def B(self) -> npt.NDArray[np.float64]:
+        """Of the averaged linear model: states by controls."""
+        return self.model.B
+
+    @property
+    def averaged(self) -> npt.NDArray[np.complex128]:
+        """Of each of `modes` by the averaged model [1/s]; of a pair the one of positive imaginary part."""
+        return self._eigenvalues("averaged")
+
+    @property
+    def floquet(self) -> npt.NDArray[np.complex128]:
+        """Of each of `modes` by Floquet theory of the periodic flight [1/s]; NaN where none was found."""
+        return self._eigenvalues("floquet")
+
+    def _eigenvalues(self, kind: str) -> npt.NDArray[np.complex128]:
+        parts = [[mode[f"{kind}_real_per_s"], mode[f"{kind}_imaginary_per_s"]] for mode in self["modes"]]
+        pairs = np.array(parts, dtype=np.float64).reshape(-1, 2)
+        return np.array(pairs[:, 0] + 1j * pairs[:, 1], dtype=np.complex128)
+
+    def to_control(self) -> Any:
+        """The averaged model as control.StateSpace of the package `control`, with names.
+
+        Returns
+        -------
+        control.StateSpace
+            From the deviations of the controls to those of all states, SI.
+
+        Raises
+        ------
+        ImportError
+            Where `control` is not installed.
+        ValueError
+            Where the vehicle is not in trim.
+
+        Examples
+        --------
+        >>> found = wb.read("flight-friction2022").flight_stability()
+        >>> found.to_control().state_labels  # doctest: +SKIP
+        ['u_m_per_s', 'v_m_per_s', 'w_m_per_s', 'p_rad_per_s', 'q_rad_per_s', 'r_rad_per_s', 'roll_rad', 'pitch_rad']
+        """
+        return self.model.to_control()
+
+    def to_scipy(self) -> Any:
+        """The averaged model as scipy.signal.StateSpace.
+
+        Returns
+        -------
+        scipy.signal.StateSpace
+            From the deviations of the controls to those of all states, SI.
+
+        Raises
+        ------
+        ImportError
+            Where SciPy is not installed.
+        ValueError
+            Where the vehicle is not in trim.
+
+        Examples
+        --------
+        >>> wb.read("flight-friction2022").flight_stability().to_scipy().A.shape
+        (8, 8)
+        """
+        return self.model.to_scipy()
+
+
+def _condition(speed: float | str, climb: float | str, turn_rate: float | str) -> tuple[float, float, float]:
+    return number("speed", speed, "m/s"), number("climb", climb, "m/s"), number("turn_rate", turn_rate, "rad/s")
+
+
+@operation
+def trim(
+    vehicle: Vehicle, *, speed: float | str = 0.0, climb: float | str = 0.0, turn_rate: float | str = 0.0
+) -> Trim:
+    """Controls and attitude of steady flight: `wingbeat trim`.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        A vehicle with a body.
+    speed : float or str, default 0.0
+        Horizontal, against the air [m/s].
+    climb : float or str, default 0.0
+        Upwards [m/s].
+    turn_rate : float or str, default 0.0
+        Of the heading, to the right [rad/s].
+
+    Returns
+    -------
+    Trim
+        The flight; a vehicle that cannot be trimmed is a result with another status.
+
+    Raises
+    ------
+    InputError
+        For a vehicle without a body, or one whose flight is not modelled.
+
+    Examples
+    --------
+    >>> hover = wb.trim(wb.read("flight-friction2022"))
+    >>> hover.status, hover["power_electrical_w"] > 0
+    ('trimmed', True)
+    """
+    return Trim(_core.trim(vehicle_of(vehicle)._design, *_condition(speed, climb, turn_rate)), vehicle)
+
+
+@operation
+def flight_stability(
+    vehicle: Vehicle,
+    *,
+    speed: float | str = 0.0,
+    climb: float | str = 0.0,
+    turn_rate: float | str = 0.0,
+    sensitivity: bool = False,
+) -> FlightStability:
+    """Modes of steady flight, averaged and by Floquet theory, and the linear model: `wingbeat stability`.
+
+    Parameters
+    ----------
+    vehicle : Vehicle
+        A vehicle with a body.
+    speed : float or str, default 0.0
+        Horizontal, against the air [m/s].
+    climb : float or str, default 0.0
+        Upwards [m/s].
+    turn_rate : float or str, default 0.0
+        Of the heading, to the right [rad/s].
+    sensitivity : bool, default False
+        With the change of the least stable mode by every parameter, which takes most of the time.
+
+    Returns
+    -------
+    FlightStability
+        The modes; without any where the vehicle is not in trim.
+
+    Raises
+    ------
+    InputError
+        For a vehicle without a body, or one whose flight is not modelled.
+
+    Examples
+    --------
+    >>> found = wb.flight_stability(wb.read("flight-friction2022"))
+    >>> found.states[:3], len(found.averaged) == len(found.modes)
+    (['u_m_per_s', 'v_m_per_s', 'w_m_per_s'], True)
+    """
+    found = _core.flight_stability(
+        vehicle_of(vehicle)._design, *_condition(speed, climb, turn_rate), flag("sensitivity", sensitivity)
+    )
+    return FlightStability(found, vehicle)

@@ -1,0 +1,250 @@
+"""Vehicles in flight: simulation, trim, stability, and their bodies as models of MuJoCo."""
+
+import copy
+import json
+import pathlib
+import subprocess
+import tempfile
+import threading
+import unittest
+import xml.etree.ElementTree as xml
+
+import numpy as np
+import wingbeat as wb
+from shared import DATA, PROGRAM, ROOT
+
+VEHICLES = ("flight-friction2022", "flight-x-wing", "flight-purdue")
+
+
+def flyer(name=VEHICLES[0]):
+    return wb.read(DATA / "designs" / f"{name}.toml")
+
+
+def in_trim(vehicle, **options):
+    """A flight in the trim of hover, and that trim."""
+    hover = vehicle.trim()
+    flight = vehicle.flight_simulation(**options)
+    flight.start(hover.body, hover.drives)
+    flight.command(hover.controls)
+    return flight, hover
+
+
+class Simulations(unittest.TestCase):
+    def test_energy_is_conserved(self):
+        for name in VEHICLES:
+            with self.subTest(name):
+                flight, _ = in_trim(flyer(name), tolerance=1e-9)
+                flight.blow([0.3, -0.2, 0.1])
+                before = flight.stored_energy
+                self.assertTrue(flight.step_to("60 ms"))
+                t = flight.totals
+                spent = t.motor + t.friction + t.wing_air + t.residual + t.stops
+                gained = t.electrical + t.body_air - spent
+                self.assertGreater(t.electrical, 1e-3)
+                self.assertAlmostEqual((flight.stored_energy - before - gained) / t.electrical, 0.0, 6)
+
+    def test_momentum_follows_from_the_impulse(self):
+        """Of a flight that does not turn, body axes are those of the earth."""
+        vehicle = flyer("flight-x-wing")
+        flight, _ = in_trim(vehicle, tolerance=1e-9)
+        self.assertTrue(flight.step_to(0.1))
+        np.testing.assert_allclose(flight.body.euler_angles, 0.0, atol=1e-9)
+        mass, weight = vehicle["vehicle.mass"], vehicle["vehicle.mass"] * 9.80665
+        change = flight.totals.impulse + [0.0, 0.0, weight * 0.1]
+        np.testing.assert_allclose(mass * flight.body.velocity, change, atol=1e-8 * weight)
+
+    def test_wind_is_motion_against_the_air(self):
+        vehicle = flyer()
+        loads = []
+        for speed, wind in ((0.8, None), (0.0, [-0.8, 0.0, 0.0]), (0.0, lambda time, place: (-0.8, 0.0, 0.0))):
+            flight, hover = in_trim(vehicle, frozen=True)
+            flight.start(wb.BodyState.at(velocity=[speed, 0, 0]), hover.drives)
+            flight.blow(wind)
+            self.assertTrue(flight.step("13 ms"))
+            loads.append([*flight.loads.force, *flight.loads.moment, *flight.totals.impulse])
+        self.assertGreater(np.abs(loads[0][0]), 1e-4)
+        np.testing.assert_allclose(loads[1], loads[0], rtol=1e-7, atol=1e-12)  # as accurate as steps are
+        np.testing.assert_array_equal(loads[2], loads[1])
+
+    def test_a_frozen_body_in_trim_carries_its_weight(self):
+        for name in VEHICLES[:2]:
+            flight, hover = in_trim(flyer(name), frozen=True, tolerance=1e-9)
+            period = 1.0 / hover["frequency_hz"]
+            flight.step_to(period)
+            force = flight.body.rotation @ flight.totals.impulse / period
+            weight = hover.vehicle["vehicle.mass"] * 9.80665
+            np.testing.assert_allclose(force / weight, [0.0, 0.0, -1.0], atol=1e-4)
+            self.assertAlmostEqual(flight.totals.electrical / period / hover["power_electrical_w"], 1.0, 5)
+
+    def test_copies_go_their_own_way(self):
+        flight, hover = in_trim(flyer("flight-purdue"))
+        flight.step_to(0.02)
+        other = copy.deepcopy(flight)
+        self.assertEqual(flight.step_to(0.03), other.step_to(0.03))
+        np.testing.assert_array_equal(np.concatenate(flight.body), np.concatenate(other.body))
+        np.testing.assert_array_equal(flight.drives, other.drives)
+        other.command({"voltage_difference": "1 V"})
+        flight.step_to(0.05), other.step_to(0.05)
+        self.assertEqual(flight.controls["voltage_difference"], 0.0)
+        self.assertGreater(abs(other.body.rates[0] - flight.body.rates[0]), 0.1)
+
+    def test_what_the_wind_raises_leaves_the_flight_where_it_was(self):
+        flight, _ = in_trim(flyer())
+        flight.step_to(0.01)
+        before = np.concatenate(flight.body)
+
+        def broken(time, place):
+            if time > 0.015:
+                raise KeyError("no such wind")
+            return (0.0, 0.0, 0.0)
+
+        flight.blow(broken)
+        with self.assertRaisesRegex(KeyError, "no such wind"):
+            flight.step_to(0.03)
+        self.assertEqual(flight.time, 0.01)
+        np.testing.assert_array_equal(np.concatenate(flight.body), before)
+        flight.blow(lambda time, place: flight.step_to(0.02) and (0, 0, 0))
+        with self.assertRaisesRegex(RuntimeError, "is being stepped"):
+            flight.step_to(0.03)
+        flight.blow(None)
+        self.assertTrue(flight.step_to(0.03))
+
+    def test_other_threads_run_meanwhile(self):
+        flight, _ = in_trim(flyer(), tolerance=1e-10)
+        thread = threading.Thread(target=flight.step_to, args=(0.5,))
+        thread.start()
+        count = 0
+        while thread.is_alive():
+            count += 1
+        self.assertGreater(count, 1000)
+
+    def test_attitudes(self):
+        angles = np.array([0.3, -0.4, 2.0])
+        body = wb.BodyState.at(euler_angles=angles)
+        np.testing.assert_allclose(body.euler_angles, angles, atol=1e-14)
+        np.testing.assert_allclose(body.rotation @ body.rotation.T, np.eye(3), atol=1e-14)
+        # Nose down by 0.4 rad: the nose points downwards, which is +z.
+        self.assertAlmostEqual(body.rotation[2, 0], np.sin(0.4))
+
+    def test_what_is_refused(self):
+        flight = flyer().flight_simulation()
+        for act, text in (
+            (lambda: wb.read("friction2022").flight_simulation(), "^body.inertia_pitch: missing: flight needs"),
+            (lambda: flight.command({"bias": 1}), "^bias: the vehicle has no such control; it has voltage, mean_stroke"),
+            (lambda: flight.command({"voltage": np.nan}), "^voltage: must be finite"),
+            (lambda: flight.start(drives=np.zeros((2, 9))), r"^drives: expected an array of 1 by 9, got \(2, 9\)"),
+            (lambda: flight.step_to(-1), "^time: must be finite and not in the past"),
+            (lambda: flight.step(-1), "^duration: must be >= 0 s"),
+            (lambda: flight.blow([1, 2]), "^wind: must be three finite numbers"),
+            (lambda: flyer().flight_simulation(tolerance=1), "^tolerance: must be a number between 1e-12 and 1e-2"),
+        ):
+            with self.assertRaisesRegex(wb.InputError, text):
+                act()
+        with self.assertRaisesRegex(TypeError, "^body: expected a wingbeat.BodyState, got list"):
+            flight.place([0.0])
+        self.assertEqual(flight.ranges["voltage"], (0.0, 9.0))
+
+
+class SteadyFlight(unittest.TestCase):
+    @unittest.skipUnless(PROGRAM, "the program is not built")
+    def test_results_are_those_of_the_program(self):
+        file = DATA / "designs" / "flight-friction2022.toml"
+
+        def printed(*command):
+            done = subprocess.run([PROGRAM, *command, "--json"], capture_output=True, text=True, check=True)
+            return json.loads(done.stdout)
+
+        found = flyer().trim(speed="0.4 m/s")
+        self.assertEqual(dict(found), printed("trim", file, "--speed", "0.4 m/s")["flights"][0])
+        found = flyer().flight_stability()
+        self.assertEqual(dict(found), printed("stability", file))
+
+    def test_controls_of_trim(self):
+        hover = flyer("flight-purdue").trim()
+        self.assertEqual(list(hover.controls), ["voltage", "voltage_difference", "bias", "split_difference"])
+        self.assertEqual([hover.controls[c].unit for c in hover.controls], ["V", "V", "V", "1"])
+        self.assertEqual(hover.drives.shape, (2, 9))
+        forward = flyer().trim(speed=0.5)
+        np.testing.assert_allclose(forward.body.rotation @ forward.body.velocity, [0.5, 0, 0], atol=1e-12)
+        self.assertAlmostEqual(forward.body.euler_angles[1], forward["pitch_rad"])
+
+    def test_a_vehicle_out_of_trim_is_a_result(self):
+        heavy = flyer().replace({"vehicle.mass": "500 g"})
+        found = heavy.trim()
+        self.assertNotEqual(found.status, "trimmed")
+        self.assertTrue(found["status_detail"])
+        if not heavy.flight_stability()["A"]:
+            with self.assertRaisesRegex(ValueError, "^no linear model: "):
+                heavy.flight_stability().A
+
+    def test_modes_are_eigenvalues(self):
+        found = flyer().flight_stability()
+        eigenvalues = np.linalg.eigvals(found.A)
+        for mode in found.averaged:
+            self.assertLess(np.abs(eigenvalues - mode).min(), 1e-8 * max(1.0, abs(mode)))
+        self.assertEqual(found.B.shape, (8, 4))
+        self.assertEqual(len(found.floquet), len(found.modes))
+        system = found.model
+        self.assertEqual((system.inputs, system.outputs), (found.controls, found.states))
+        np.testing.assert_array_equal(system.C, np.eye(8))
+
+    def test_the_linear_model_is_that_of_the_simulation(self):
+        """Mean forces of a frozen body that moves by du, over a wingbeat, against the column of A."""
+        vehicle = flyer("flight-x-wing")
+        found = vehicle.flight_stability()
+        du, means = 0.05, []
+        for speed in (-du, du):
+            flight, hover = in_trim(vehicle, frozen=True)
+            flight.start(wb.BodyState.at(velocity=[speed, 0, 0]), hover.drives)
+            flight.step_to(1.0)
+            before, turns, start = flight.totals, flight.drives[0, 0], flight.time
+            period = 1.0 / hover["frequency_hz"]
+            flight.step(20 * period)
+            self.assertAlmostEqual((flight.drives[0, 0] - turns) / (40 * np.pi), 1.0, 1)
+            means.append((flight.totals.impulse[0] - before.impulse[0]) / (flight.time - start))
+        slope = (means[1] - means[0]) / (2 * du) / vehicle["vehicle.mass"]
+        self.assertAlmostEqual(slope / found.A[0, 0], 1.0, 1)
+
+    def test_other_packages(self):
+        found = flyer().flight_stability()
+        try:
+            import control
+        except ImportError:
+            with self.assertRaisesRegex(ImportError, "control"):
+                found.to_control()
+        else:
+            self.assertEqual(found.to_control().input_labels, found.controls)
+            self.assertTrue(control)
+
+
+class Mjcf(unittest.TestCase):
+    def model(self, vehicle):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "model.xml"
+            vehicle.export_mjcf(file, timestep="0.2 ms")
+            with self.assertRaisesRegex(wb.InputError, "^file: .*model.xml exists; force=True replaces it"):
+                vehicle.export_mjcf(file)
+            return xml.parse(file).getroot()
+
+    def test_a_free_body_with_wings_that_weigh_nothing(self):
+        root = self.model(flyer("flight-purdue").replace({"body.inertia_product": "2e-7 kg m2"}))
+        self.assertEqual(root.find("option").get("timestep"), "0.0002")
+        body = root.find("worldbody/body")
+        self.assertIsNotNone(body.find("freejoint"))
+        self.assertEqual(float(body.find("inertial").get("mass")), 0.0124481)
+        inertia = [float(x) for x in body.find("inertial").get("fullinertia").split()]
+        np.testing.assert_allclose(inertia, [4238.1e-9, 3970.2e-9, 2441.0e-9, 0, 2e-7, 0], rtol=1e-8)
+        sites = {site.get("name"): site.get("pos") for site in body.iter("site")}
+        self.assertEqual(sites["shoulder-right-0"], "-0.0001797 -0.01395 0.0203898")
+        self.assertEqual(sites["shoulder-left-1"], "-0.0001797 0.01395 0.0203898")
+        visual = root.find("default/default[@class='visual']/geom")
+        self.assertEqual((visual.get("mass"), visual.get("contype"), visual.get("conaffinity")), ("0", "0", "0"))
+        self.assertEqual({geom.get("class") for geom in body.iter("geom")}, {"visual"})
+
+    def test_the_model_of_the_example_is_what_is_written(self):
+        kept = (ROOT / "examples" / "mujoco" / "flight-x-wing.xml").read_text()
+        self.assertEqual(kept, wb._mjcf.mjcf_of(flyer("flight-x-wing")))
+
+
+if __name__ == "__main__":
+    unittest.main()
