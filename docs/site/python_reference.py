@@ -259,7 +259,9 @@ class Reference:
             homes = [one.module for one in self.package.trees[module].body if isinstance(one, ast.ImportFrom)
                      and one.level and base in {name.name for name in one.names}]
             if homes and base not in self.links:
-                yield from self.package.definitions(homes[0], base)[0].body
+                defined = self.package.definitions(homes[0], base)[0]
+                if isinstance(defined, ast.ClassDef):  # else chosen by what is installed
+                    yield from defined.body
 
     def sections(self, parts, given):
         stated = split_names(parts.get("Parameters", []))

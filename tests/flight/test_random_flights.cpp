@@ -66,8 +66,8 @@ TEST(RandomFlights, AreInTrimAsTheSimulationHasIt) {
 
 TEST(RandomFlights, LinearModelsAreDifferencesOfTheSimulation) {
   std::mt19937_64 random(20786);
-  for (int n = 0; n < 4; ++n) {
-    const Design<double> d = random_flyer(n % 2 == 0 ? "friction2022" : "x-wing", random);
+  for (int n = 0; n < 2; ++n) {
+    const Design<double> d = random_flyer("friction2022", random);
     AveragedFlight flight(flight_vehicle(d));
     const TrimResult t = trim(flight, {});
     ASSERT_TRUE(t.flight) << n;
@@ -83,9 +83,10 @@ TEST(RandomFlights, LinearModelsAreDifferencesOfTheSimulation) {
       held.start(moved, {t.flight->cycles[0].start});
       const double start = t.flight->cycles[0].start.angle;
       // Whole turns by the crank itself: a mean between two passages of the start's angle.
+      constexpr int turns = 41;
       double T = 0.0;
       FlightTotals before;
-      for (int turn = 1; turn <= 61; ++turn) {
+      for (int turn = 1; turn <= turns; ++turn) {
         double next = held.time() + 0.999 * t.flight->cycles[0].period;
         for (int iteration = 0; iteration < 40; ++iteration) {
           FlightSimulation ahead = held;
@@ -95,7 +96,7 @@ TEST(RandomFlights, LinearModelsAreDifferencesOfTheSimulation) {
           if (std::abs(gap) < 1e-12) break;
           next += gap / there.speed;
         }
-        if (turn == 61) before = held.totals(), T = next - held.time();
+        if (turn == turns) before = held.totals(), T = next - held.time();
         held.step_to(next);
       }
       BodyLoads mean;
