@@ -70,6 +70,7 @@ FlightModel::FlightModel(const FlightModel& other)
       flows_(other.flows_),
       first_(other.first_),
       controls_(other.controls_),
+      scaled_to_(other.scaled_to_),
       speed_scale_(other.speed_scale_),
       rate_scale_(other.rate_scale_) {
   own_flows();
@@ -80,7 +81,7 @@ FlightModel& FlightModel::operator=(const FlightModel& other) {
   vehicle = other.vehicle, drives = other.drives, coupled = other.coupled, frozen = other.frozen;
   gravity = other.gravity, wind = other.wind, now = other.now, totals = other.totals;
   flows_ = other.flows_, first_ = other.first_, controls_ = other.controls_;
-  speed_scale_ = other.speed_scale_, rate_scale_ = other.rate_scale_;
+  scaled_to_ = other.scaled_to_, speed_scale_ = other.speed_scale_, rate_scale_ = other.rate_scale_;
   own_flows();
   return *this;
 }
@@ -101,6 +102,7 @@ void FlightModel::start(const BodyState& body, const std::vector<Coordinates<dou
   set_flows(0.0, body);
   for (std::size_t n = 0; n < drives.size(); ++n) {
     drives[n].start(n < from.size() ? from[n] : Coordinates<double>{});
+    scaled_to_[n] = 0.0;
     const double fastest =
         drives[n].speed_scale * (vehicle.direct ? 1.0 : typical_stroke_slope(drives[n].vehicle.transmission));
     const double R = drives[n].vehicle.wings.wake.strips.at.back().radius;
@@ -133,7 +135,9 @@ void FlightModel::set_controls(const FlightControls& controls) {
       }
       drive.command = [V](double) { return V; };
     }
-    drive.scale_to(std::max(highest, 1e-3 * std::max(vehicle.stated_voltage, 1e-6)));
+    // Sizes need not follow each change, and of direct drives they cost more than a wingbeat.
+    highest = std::max(highest, 1e-3 * std::max(vehicle.stated_voltage, 1e-6));
+    if (highest > 1.25 * scaled_to_[n] || highest < 0.5 * scaled_to_[n]) drive.scale_to(scaled_to_[n] = highest);
   }
 }
 

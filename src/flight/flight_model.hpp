@@ -98,6 +98,7 @@ class FlightModel {
   std::vector<std::shared_ptr<OnsetFlow>> flows_;
   std::array<std::size_t, max_drives + 1> first_{};  ///< where the unknowns of each drive begin, then the body's
   FlightControls controls_;
+  std::array<double, max_drives> scaled_to_{};  ///< voltage that the sizes of a drive are for [V]
   double speed_scale_ = 1.0, rate_scale_ = 1.0;
 };
 
