@@ -180,7 +180,8 @@ class SteadyFlight(unittest.TestCase):
     def test_modes_are_eigenvalues(self):
         found = flyer().flight_stability()
         eigenvalues = np.linalg.eigvals(found.A)
-        for mode in found.averaged:
+        self.assertGreater(np.count_nonzero(~np.isnan(found.averaged)), 3)
+        for mode in found.averaged[~np.isnan(found.averaged)]:
             self.assertLess(np.abs(eigenvalues - mode).min(), 1e-8 * max(1.0, abs(mode)))
         self.assertEqual(found.B.shape, (8, 4))
         self.assertEqual(len(found.floquet), len(found.modes))
@@ -210,7 +211,7 @@ class SteadyFlight(unittest.TestCase):
         try:
             import control
         except ImportError:
-            with self.assertRaisesRegex(ImportError, "control"):
+            with self.assertRaisesRegex(ImportError, "^the package `control` .python-control. is not installed$"):
                 found.to_control()
         else:
             self.assertEqual(found.to_control().input_labels, found.controls)
