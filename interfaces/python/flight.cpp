@@ -76,7 +76,7 @@ class Flown {
     });
   }
 
-  void command(const std::array<double, flight_control_count>& at) { idle().command({at}); }
+  void command(const std::array<double, flight_control_count>& settings) { idle().command({settings}); }
 
  private:
   FlightSimulation flight_;

@@ -1,6 +1,7 @@
 """Vehicles in flight: simulation, trim, stability, and their bodies as models of MuJoCo."""
 
 import copy
+import ctypes
 import json
 import pathlib
 import subprocess
@@ -180,7 +181,8 @@ class SteadyFlight(unittest.TestCase):
     def test_modes_are_eigenvalues(self):
         found = flyer().flight_stability()
         eigenvalues = np.linalg.eigvals(found.A)
-        for mode in found.averaged:
+        self.assertGreater(np.count_nonzero(~np.isnan(found.averaged)), 3)
+        for mode in found.averaged[~np.isnan(found.averaged)]:
             self.assertLess(np.abs(eigenvalues - mode).min(), 1e-8 * max(1.0, abs(mode)))
         self.assertEqual(found.B.shape, (8, 4))
         self.assertEqual(len(found.floquet), len(found.modes))
@@ -210,7 +212,7 @@ class SteadyFlight(unittest.TestCase):
         try:
             import control
         except ImportError:
-            with self.assertRaisesRegex(ImportError, "control"):
+            with self.assertRaisesRegex(ImportError, "^the package `control` .python-control. is not installed$"):
                 found.to_control()
         else:
             self.assertEqual(found.to_control().input_labels, found.controls)
@@ -244,6 +246,61 @@ class Mjcf(unittest.TestCase):
     def test_the_model_of_the_example_is_what_is_written(self):
         kept = (ROOT / "examples" / "mujoco" / "flight-x-wing.xml").read_text()
         self.assertEqual(kept, wb._mjcf.mjcf_of(flyer("flight-x-wing")))
+
+
+LOADS = pathlib.Path(PROGRAM).parent / "libwingbeat-flight.so" if PROGRAM else None
+
+
+@unittest.skipUnless(LOADS and LOADS.exists(), "libwingbeat-flight is not built")
+class Loads(unittest.TestCase):
+    """The functions of C for a body that another program moves."""
+
+    def setUp(self):
+        self.library = ctypes.CDLL(str(LOADS))
+        self.library.wingbeat_flight_create.restype = ctypes.c_void_p
+        for name in ("error", "control_name"):
+            getattr(self.library, f"wingbeat_flight_{name}").restype = ctypes.c_char_p
+
+    def call(self, name, flight, *given):
+        """Calls a function; arrays of NumPy are pointers."""
+        as_c = [x.ctypes.data_as(ctypes.c_void_p) if isinstance(x, np.ndarray) else ctypes.c_double(x) for x in given]
+        return getattr(self.library, f"wingbeat_flight_{name}")(ctypes.c_void_p(flight), *as_c)
+
+    def test_a_step_from_a_turned_body(self):
+        """Its mean force and torque are those of the flight in Python, in the axes of MuJoCo."""
+        vehicle, step = flyer("flight-x-wing"), 1e-4
+        flight = self.library.wingbeat_flight_create(bytes(DATA / "designs" / "flight-x-wing.toml"))
+        controls, qpos, qvel, force, torque = np.zeros(7), np.zeros(7), np.zeros(6), np.zeros(3), np.zeros(3)
+        self.assertEqual(self.call("trim", flight, 0.0, controls, qpos, qvel), 0)
+        self.assertAlmostEqual(controls[0], vehicle.trim().controls["voltage"], 12)
+        body = wb.BodyState.at(position=[1, 2, -3], euler_angles=[0.3, -0.2, 1.0], velocity=[0.4, 0.1, -0.2],
+                               rates=[1, -2, 3])
+        half_turn = np.diag([1.0, -1.0, -1.0])
+        qpos[:] = [*(half_turn @ body.position), *(body.attitude * [1, 1, -1, -1])]
+        qvel[:] = [*(half_turn @ body.rotation @ body.velocity), *(half_turn @ body.rates)]
+        self.assertEqual(self.call("step", flight, qpos, qvel, step, controls, force, torque), 0)
+        self.library.wingbeat_flight_free(ctypes.c_void_p(flight))
+        alone, _ = in_trim(vehicle)
+        alone.place(body)
+        self.assertTrue(alone.step(step))
+        weight = vehicle["vehicle.mass"] * 9.80665
+        mean = half_turn @ body.rotation @ alone.totals.impulse / step
+        np.testing.assert_allclose(force, mean, atol=1e-3 * weight)
+        mean = half_turn @ body.rotation @ alone.totals.angular_impulse / step
+        np.testing.assert_allclose(torque, mean, atol=1e-4 * weight)
+        self.assertGreater(np.abs(torque).max(), 1e-3 * weight)
+
+    def test_errors(self):
+        names = [self.library.wingbeat_flight_control_name(k) for k in range(8)]
+        self.assertEqual(names[::4] + names[7:], [b"voltage", b"mean_stroke_angle", None])
+        self.assertIsNone(self.library.wingbeat_flight_create(b"nothing.toml"))
+        self.assertIn(b"nothing.toml", self.library.wingbeat_flight_error())
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "heavy.toml"
+            heavy = flyer().replace({"body.wing_mass": "50 mg", "body.wing_centre": "25 mm"})
+            file.write_text(heavy.to_toml())
+            self.assertIsNone(self.library.wingbeat_flight_create(bytes(file)))
+            self.assertIn(b"body.wing_mass: ", self.library.wingbeat_flight_error())
 
 
 if __name__ == "__main__":

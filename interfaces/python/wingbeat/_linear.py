@@ -89,7 +89,10 @@ class LinearModel:
         >>> model.to_control().input_labels  # doctest: +SKIP
         ['voltage', 'load_torque']
         """
-        control = importlib.import_module("control")
+        try:
+            control = importlib.import_module("control")
+        except ImportError as error:
+            raise ImportError("the package `control` (python-control) is not installed") from error
         return control.ss(
             self.A,
             self.B,

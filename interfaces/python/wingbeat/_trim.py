@@ -99,7 +99,7 @@ class FlightStability(StudyResult):
 
     @property
     def averaged(self) -> npt.NDArray[np.complex128]:
-        """Of each of `modes` by the averaged model [1/s]; of a pair the one of positive imaginary part."""
+        """Of each of `modes` by the averaged model [1/s], NaN where none; of a pair that of positive imaginary part."""
         return self._eigenvalues("averaged")
 
     @property

@@ -169,7 +169,7 @@ class HoverEnv(FlightEnv):
         Steady wind in earth axes [m/s].
     gusts : float or str, default 0.0
         Standard deviation of gusts on each axis [m/s], with a correlation time of 0.5 s, constant over a step.
-    tolerance : float, default 1e-05
+    tolerance : float, default 0.0001
         Admissible relative error of an integration step, 1e-12 to 1e-2.
     render_mode : str, optional
         None: nothing is drawn.
@@ -189,7 +189,7 @@ class HoverEnv(FlightEnv):
     def __init__(
         self, vehicle: Vehicle | str = "flight-friction2022", *, rate: float | str = 100.0,
         duration: float | str = 10.0, disturbance: float = 1.0, wind: Any = (0.0, 0.0, 0.0), gusts: float | str = 0.0,
-        tolerance: float = 1e-5, render_mode: str | None = None,
+        tolerance: float = 1e-4, render_mode: str | None = None,
     ) -> None:  # fmt: skip
         options = options_of(rate, duration, disturbance, wind, gusts, tolerance)
         super().__init__(_flights("hover", vehicle, 1, options, 1, render_mode))
@@ -212,7 +212,7 @@ class TrackEnv(FlightEnv):
         Steady wind in earth axes [m/s].
     gusts : float or str, default 0.0
         Standard deviation of gusts on each axis [m/s], with a correlation time of 0.5 s, constant over a step.
-    tolerance : float, default 1e-05
+    tolerance : float, default 0.0001
         Admissible relative error of an integration step, 1e-12 to 1e-2.
     render_mode : str, optional
         None: nothing is drawn.
@@ -233,7 +233,7 @@ class TrackEnv(FlightEnv):
     def __init__(
         self, vehicle: Vehicle | str = "flight-friction2022", *, rate: float | str = 100.0,
         duration: float | str = 10.0, disturbance: float = 1.0, wind: Any = (0.0, 0.0, 0.0), gusts: float | str = 0.0,
-        tolerance: float = 1e-5, render_mode: str | None = None,
+        tolerance: float = 1e-4, render_mode: str | None = None,
     ) -> None:  # fmt: skip
         options = options_of(rate, duration, disturbance, wind, gusts, tolerance)
         super().__init__(_flights("track", vehicle, 1, options, 1, render_mode))
@@ -248,7 +248,7 @@ def _flights(task: str, vehicle: Vehicle | str, n: int, options: Any, threads: i
 def make(
     task: str, vehicle: Vehicle | str = "flight-friction2022", *, rate: float | str = 100.0,
     duration: float | str = 10.0, disturbance: float = 1.0, wind: Any = (0.0, 0.0, 0.0), gusts: float | str = 0.0,
-    tolerance: float = 1e-5,
+    tolerance: float = 1e-4,
 ) -> FlightEnv:  # fmt: skip
     """An environment, for those who do without Gymnasium's `make`.
 
@@ -268,7 +268,7 @@ def make(
         Steady wind in earth axes [m/s].
     gusts : float or str, default 0.0
         Standard deviation of gusts on each axis [m/s], with a correlation time of 0.5 s, constant over a step.
-    tolerance : float, default 1e-05
+    tolerance : float, default 0.0001
         Admissible relative error of an integration step, 1e-12 to 1e-2.
 
     Returns
@@ -298,7 +298,7 @@ def make(
 def make_vec(
     task: str, vehicle: Vehicle | str, n: int, *, threads: int = 0, rate: float | str = 100.0,
     duration: float | str = 10.0, disturbance: float = 1.0, wind: Any = (0.0, 0.0, 0.0), gusts: float | str = 0.0,
-    tolerance: float = 1e-5, autoreset: str = "NextStep",
+    tolerance: float = 1e-4, autoreset: str = "NextStep",
 ) -> FlightVectorEnv:  # fmt: skip
     """Many environments in arrays, whose flights are stepped in one call, on threads.
 
@@ -322,7 +322,7 @@ def make_vec(
         Steady wind in earth axes [m/s].
     gusts : float or str, default 0.0
         Standard deviation of gusts on each axis [m/s], with a correlation time of 0.5 s, constant over a step.
-    tolerance : float, default 1e-05
+    tolerance : float, default 0.0001
         Admissible relative error of an integration step, 1e-12 to 1e-2.
     autoreset : str, default 'NextStep'
         When a flight that has ended starts anew: "NextStep", where the next action is ignored and earns 0, or
