@@ -10,7 +10,7 @@ namespace wingbeat {
 namespace {
 
 /// Each loop is so many times slower than the one inside it.
-constexpr double separation = 3.0;
+constexpr double separation = 2.5;
 /// The fastest loop turns its phase by so much over the delay [rad], and takes so many wingbeats for a turn.
 constexpr double phase_lost = 0.5, wingbeats = 6.0;
 /// The integral of a loop takes up what stays within so many of its time constants.
@@ -74,10 +74,10 @@ FlightControls FlightController::cascade(const FlightMeasurement& m, const Fligh
   for (std::size_t k = 0; k < 2; ++k) {
     a[k] = d.velocity * error[k] + d.velocity * d.velocity / integral_time * velocity_integral_[k];
   }
-  const double most = standard_gravity * options_.max_tilt, size = std::hypot(a[0], a[1]);
-  if (size > most) a[0] *= most / size, a[1] *= most / size;
+  const double largest = standard_gravity * options_.max_tilt, size = std::hypot(a[0], a[1]);
+  if (size > largest) a[0] *= largest / size, a[1] *= largest / size;
   for (std::size_t k = 0; k < 2; ++k) {
-    if (size <= most || error[k] * a[k] < 0.0) velocity_integral_[k] += step_ * error[k];
+    if (size <= largest || error[k] * a[k] < 0.0) velocity_integral_[k] += step_ * error[k];
   }
   const double c = std::cos(m.angles[2]), s = std::sin(m.angles[2]);
   const double pitch = task_.trim.pitch - (c * a[0] + s * a[1]) / standard_gravity;

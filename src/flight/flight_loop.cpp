@@ -12,8 +12,8 @@ SensorSet::SensorSet(const FlightSensors& sensors, double average)
 
 void SensorSet::sample(double time, const BodyState& body) {
   Sample s{time, {body.position, body.velocity, euler_angles(body.attitude), body.rates}};
-  const auto add = [&](Triple& of, double deviation) {
-    for (double& x : of) x += deviation * noise_.next();
+  const auto add = [&](Triple& vector, double deviation) {
+    for (double& x : vector) x += deviation * noise_.next();
   };
   add(s.seen.position, sensors_.position);
   add(s.seen.velocity, sensors_.velocity);
@@ -91,11 +91,11 @@ void BatteryInFlight::use(double time, double energy) {
 
 FlightControls BatteryInFlight::within(FlightControls controls) const {
   if (!there_) return controls;
-  const double most = available();
+  const double largest = available();
   double& mean = controls[FlightControl::voltage];
   double& difference = controls[FlightControl::voltage_difference];
-  mean = std::min(mean, most);
-  difference = std::clamp(difference, -(most - mean), most - mean);
+  mean = std::min(mean, largest);
+  difference = std::clamp(difference, -(largest - mean), largest - mean);
   return controls;
 }
 

@@ -32,8 +32,8 @@ class SensorSet {
 /// First-order actuators, whose mean over a step is held over it.
 class ActuatorSet {
  public:
-  ActuatorSet(const FlightActuators& actuators, const FlightControls& at, double step)
-      : actuators_(actuators), at_(at), step_(step) {}
+  ActuatorSet(const FlightActuators& actuators, const FlightControls& first, double step)
+      : actuators_(actuators), at_(first), step_(step) {}
   FlightControls follow(const FlightControls& command);
 
  private:

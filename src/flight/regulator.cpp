@@ -109,8 +109,8 @@ void FlightController::design_regulator() {
   for (Index c = 0; c < nu; ++c) {
     const FlightControl which = design_.controls[std::size_t(c)];
     const ControlRange& range = task_.vehicle->ranges[std::size_t(which)];
-    const double at = task_.trim.controls[which], half = 0.5 * (range.high - range.low);
-    const double room = std::max(std::min(range.high - at, at - range.low), 0.1 * half);
+    const double trimmed = task_.trim.controls[which], half = 0.5 * (range.high - range.low);
+    const double room = std::max(std::min(range.high - trimmed, trimmed - range.low), 0.1 * half);
     R(c, c) = step_ / square(options_.sizes.controls * room);
   }
   const std::optional<Regulator> found = discrete_regulator(delayed, Q, R);

@@ -142,8 +142,8 @@ TEST(FlightByPlan, BandwidthsAndGainsGivenAreTaken) {
   EXPECT_DOUBLE_EQ(d.attitude, 10.0);
   EXPECT_EQ(*d.loops[std::size_t(FlightAxis::yaw)].proportional, 0.005);
   AveragedFlight averaged(vehicle, {.tolerance = 1e-8});
-  const TrimResult at = trim(averaged, {});
-  const auto linear = linear_flight(averaged, at);
+  const TrimResult found = trim(averaged, {});
+  const auto linear = linear_flight(averaged, found);
   ASSERT_TRUE(linear);
   // Pitch by the mean stroke angle, the second control.
   EXPECT_NEAR(*d.loops[std::size_t(FlightAxis::pitch)].proportional * linear->B(4, 1), 30.0, 0.01);
