@@ -18,7 +18,8 @@ constexpr double integral_time = 8.0;
 }  // namespace
 
 void FlightController::design_cascade() {
-  const double rate = two_pi * task_.trim.frequency;
+  // The waves of direct drives bear less.
+  const double rate = two_pi * task_.trim.frequency * (task_.vehicle->direct ? 0.5 : 1.0);
   design_.rates =
       options_.bandwidths.rates.value_or(std::min(rate / wingbeats, phase_lost / std::max(task_.delay, 0.5 * step_)));
   design_.attitude = options_.bandwidths.attitude.value_or(design_.rates / separation);

@@ -24,9 +24,10 @@ void SensorSet::sample(double time, const BodyState& body) {
 
 FlightMeasurement SensorSet::measured(double time) {
   constexpr double rounding = 1e-9;
-  const double newest = time - sensors_.delay + rounding, oldest = newest - average_ - 2.0 * rounding;
-  // The last one before the averaging time stays, in case there is none within it.
-  while (samples_.size() > 1 && samples_[1].time <= newest && samples_[0].time < oldest) samples_.pop_front();
+  // Over a whole wingbeat its two ends count once.
+  const double newest = time - sensors_.delay + rounding, oldest = newest - average_ + rounding;
+  // The last one before the averaging time stays where there is none within it.
+  while (samples_.size() > 1 && samples_[1].time <= newest && samples_[0].time <= oldest) samples_.pop_front();
   FlightMeasurement mean = samples_.front().seen;
   const double yaw = mean.angles[2];
   double count = 1.0;

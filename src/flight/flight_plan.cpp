@@ -48,7 +48,7 @@ void validate(const FlightPlan& p) {
   require(between(p.max_tilt, 0.1, pi), "limits.tilt", "must be between 5.73 and 180 deg");
   require(p.max_distance > 0.0, "limits.distance", "must be > 0 m");
   require(!p.ground || *p.ground < p.height, "limits.ground", "must be below the height of the start");
-  require(between(p.controller.rate, 10.0, 1e4), "controller.rate", "must be between 10 Hz and 10 kHz");
+  require(p.controller.rate == 0.0 || between(p.controller.rate, 10.0, 1e4), "controller.rate", "must be between 10 Hz and 10 kHz");
   require(p.sensors.rate == 0.0 || between(p.sensors.rate, 10.0, 1e4), "sensors.rate",
           "must be between 10 Hz and 10 kHz");
   require(between(p.sensors.delay, 0.0, 0.2), "sensors.delay", "must be between 0 and 200 ms");
@@ -61,9 +61,10 @@ void validate(const FlightPlan& p) {
     require(x >= 0.0, "sensors", "standard deviations must be >= 0");
   }
   const RegulatorSizes& s = p.controller.sizes;
-  for (const double x : {s.position, s.heading, s.velocity, s.attitude, s.rates, s.controls}) {
+  for (const double x : {s.position, s.heading, s.velocity, s.attitude, s.rates}) {
     require(x > 0.0, "controller.sizes", "must be > 0");
   }
+  require(s.controls >= 0.0, "controller.sizes.controls", "must be >= 0");
   require(s.integral >= 0.0, "controller.sizes.integral", "must be >= 0 m s");
   require(p.wind.deviation >= 0.0, "wind.turbulence", "must be >= 0 m/s");
   require(between(p.wind.time_constant, 1e-3, 1e4), "wind.time_constant", "must be between 1 ms and 1e4 s");

@@ -266,8 +266,9 @@ double lag_of(FlightControl which, const FlightActuators& actuators, double wing
 
 }  // namespace
 
-Flight fly(const FlightVehicle& vehicle, const FlightPlan& plan) {
-  validate(plan);
+Flight fly(const FlightVehicle& vehicle, const FlightPlan& asked) {
+  validate(asked);
+  FlightPlan plan = asked;
   Flight flight;
   flight.trim.condition = plan.condition;
   ControlTask task;
@@ -290,6 +291,11 @@ Flight fly(const FlightVehicle& vehicle, const FlightPlan& plan) {
   }
   task.trim = flight.trim;
   const double wingbeat = flight.trim.frequency > 0.0 ? 1.0 / flight.trim.frequency : 0.0;
+  constexpr double steps_of_wingbeat = 8.0, rate_without_trim = 250.0;
+  if (!(plan.controller.rate > 0.0)) {
+    plan.controller.rate = wingbeat > 0.0 ? std::clamp(steps_of_wingbeat / wingbeat, 10.0, 1e4) : rate_without_trim;
+  }
+  flight.control_rate = plan.controller.rate;
   const double average = plan.sensors.average.value_or(wingbeat);
   task.delay = plan.sensors.delay + 0.5 * average;
   for (std::size_t k = 0; k < flight_control_count; ++k) {

@@ -100,6 +100,7 @@ void FlightController::design_regulator() {
     if (m > 1) delayed.A.block(n + nu, n, (m - 1) * nu, (m - 1) * nu).setIdentity();
   }
   const RegulatedState sizes = bryson_sizes(options_.sizes);
+  const double share = options_.sizes.controls > 0.0 ? options_.sizes.controls : task_.vehicle->direct ? 0.1 : 0.5;
   MatrixXd Q = MatrixXd::Zero(size, size), R = MatrixXd::Zero(nu, nu);
   for (Index i = 0; i < nx; ++i) Q(i, i) = step_ / square(sizes[kept_[std::size_t(i)]]);
   for (Index i = 0; i < ni; ++i) {
@@ -111,7 +112,7 @@ void FlightController::design_regulator() {
     const ControlRange& range = task_.vehicle->ranges[std::size_t(which)];
     const double trimmed = task_.trim.controls[which], half = 0.5 * (range.high - range.low);
     const double room = std::max(std::min(range.high - trimmed, trimmed - range.low), 0.1 * half);
-    R(c, c) = step_ / square(options_.sizes.controls * room);
+    R(c, c) = step_ / square(share * room);
   }
   const std::optional<Regulator> found = discrete_regulator(delayed, Q, R);
   if (!found) {

@@ -41,7 +41,8 @@ struct RegulatorSizes {
   double attitude = 0.2;   ///< roll and pitch [rad]
   double rates = 4.0;      ///< [rad/s]
   double integral = 0.15;  ///< of position [m s]; of the heading in the ratio of their sizes; 0: no integrals
-  double controls = 0.5;   ///< share of the way from trim to the nearer limit [1]
+  /// Share of the way from trim to the nearer limit [1]; 0: 0.5, of direct drives, whose waves bear less, 0.1.
+  double controls = 0.0;
 };
 
 /// Bandwidths of the loops [rad/s]; those not given follow from the wingbeat and the delay.
@@ -56,7 +57,7 @@ struct LoopGains {
 
 struct ControllerOptions {
   ControllerType type = ControllerType::lqr;
-  double rate = 250.0;  ///< [Hz]
+  double rate = 0.0;  ///< [Hz]; 0: eight times in a wingbeat
   RegulatorSizes sizes;
   LoopBandwidths bandwidths;
   std::array<LoopGains, flight_axis_count> gains;  ///< in place of those designed

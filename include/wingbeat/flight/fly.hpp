@@ -137,6 +137,7 @@ struct Flight {
   FlightOutcome outcome = FlightOutcome::completed;
   std::string detail;  ///< a sentence
   double end = 0.0;    ///< [s]
+  double control_rate = 0.0;  ///< [Hz]
   std::vector<FlightRow> rows;
   FlightEnergy energy;
   TrackingError error;
