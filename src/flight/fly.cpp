@@ -300,6 +300,7 @@ Flight fly(const FlightVehicle& vehicle, const FlightPlan& asked) {
   task.delay = plan.sensors.delay + 0.5 * average;
   for (std::size_t k = 0; k < flight_control_count; ++k) {
     task.lag[k] = lag_of(FlightControl(k), plan.actuators, wingbeat);
+    task.actuator_lag[k] = plan.actuators.time_constant[k];
     task.speed[k] = plan.actuators.rate_limit[k];
   }
   FlightController controller(plan.controller, task);
