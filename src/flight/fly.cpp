@@ -23,7 +23,7 @@ struct Clock {
 
 class FlightRun {
  public:
-  FlightRun(const FlightVehicle& vehicle, const FlightPlan& plan, Flight& flight, FlightController controller,
+  FlightRun(const FlightVehicle& vehicle, const FlightPlan& plan, FlightRecord& flight, FlightController controller,
             double average)
       : vehicle_(vehicle),
         plan_(plan),
@@ -241,7 +241,7 @@ class FlightRun {
 
   const FlightVehicle& vehicle_;
   const FlightPlan& plan_;
-  Flight& flight_;
+  FlightRecord& flight_;
   FlightController controller_;
   FlightSimulation simulation_;
   SensorSet sensors_;
@@ -266,10 +266,10 @@ double lag_of(FlightControl which, const FlightActuators& actuators, double wing
 
 }  // namespace
 
-Flight fly(const FlightVehicle& vehicle, const FlightPlan& asked) {
+FlightRecord fly(const FlightVehicle& vehicle, const FlightPlan& asked) {
   validate(asked);
   FlightPlan plan = asked;
-  Flight flight;
+  FlightRecord flight;
   flight.trim.condition = plan.condition;
   ControlTask task;
   task.vehicle = &vehicle;

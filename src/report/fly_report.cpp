@@ -54,7 +54,7 @@ std::string cascade_text(const ControllerDesign& d) {
 }  // namespace
 
 std::string text_fly(const FlyReport& report) {
-  const Flight& f = report.flight;
+  const FlightRecord& f = report.flight;
   std::string text = fmt::format("{}\n  {}: {}\n", report.title, name_of(f.outcome), f.detail);
   if (f.rows.empty()) return text;
   for (const std::string& sentence : f.design.uncontrolled) text += "  " + sentence + "\n";

@@ -91,7 +91,7 @@ FlightPlan rough_hover(ControllerType type) {
 TEST(FlightByPlan, FlapperHoversByEachControllerInGusts) {
   const FlightVehicle vehicle = flight_vehicle(flying_design("friction2022"));
   for (const ControllerType type : {ControllerType::lqr, ControllerType::pid}) {
-    const Flight flight = fly(vehicle, rough_hover(type));
+    const FlightRecord flight = fly(vehicle, rough_hover(type));
     EXPECT_EQ(flight.outcome, FlightOutcome::completed) << name_of(type) << ": " << flight.detail;
     EXPECT_LT(flight.error.horizontal_max, 0.5) << name_of(type);
     EXPECT_LT(flight.error.vertical_max, 0.2) << name_of(type);
@@ -100,7 +100,7 @@ TEST(FlightByPlan, FlapperHoversByEachControllerInGusts) {
     if (type != ControllerType::lqr) continue;
     EXPECT_LT(flight.design.riccati_residual, 1e-9);
     EXPECT_LT(flight.design.spectral_radius, 1.0);
-    const Flight again = fly(vehicle, rough_hover(type));
+    const FlightRecord again = fly(vehicle, rough_hover(type));
     ASSERT_EQ(flight.rows.size(), again.rows.size());
     EXPECT_EQ(flight.rows.back().position, again.rows.back().position);
   }
@@ -109,7 +109,7 @@ TEST(FlightByPlan, FlapperHoversByEachControllerInGusts) {
 TEST(FlightByPlan, FlapperWithoutAControllerTipsOver) {
   FlightPlan plan = rough_hover(ControllerType::none);
   plan.duration = 10.0;
-  const Flight flight = fly(flight_vehicle(flying_design("friction2022")), plan);
+  const FlightRecord flight = fly(flight_vehicle(flying_design("friction2022")), plan);
   EXPECT_EQ(flight.outcome, FlightOutcome::crashed);
   EXPECT_THAT(flight.detail, testing::HasSubstr("tips over"));
   EXPECT_LT(flight.end, 5.0);
@@ -124,7 +124,7 @@ TEST(FlightByPlan, FreeFallEndsOnTheGroundInTime) {
   plan.held = FlightControls{};
   plan.height = 1.0;
   plan.ground = 0.0;
-  const Flight flight = fly(flight_vehicle(design), plan);
+  const FlightRecord flight = fly(flight_vehicle(design), plan);
   EXPECT_EQ(flight.outcome, FlightOutcome::crashed);
   EXPECT_NEAR(flight.end, std::sqrt(2.0 / standard_gravity), 1e-6);
 }
@@ -136,7 +136,7 @@ TEST(FlightByPlan, BandwidthsAndGainsGivenAreTaken) {
   plan.controller.type = ControllerType::pid;
   plan.controller.bandwidths.rates = 30.0;
   plan.controller.gains[std::size_t(FlightAxis::yaw)].proportional = 0.005;
-  const Flight flight = fly(vehicle, plan);
+  const FlightRecord flight = fly(vehicle, plan);
   const ControllerDesign& d = flight.design;
   EXPECT_EQ(d.rates, 30.0);
   EXPECT_DOUBLE_EQ(d.attitude, 10.0);
@@ -154,7 +154,7 @@ TEST(FlightByPlan, WhatNoControlSteersIsSaid) {
   design.body.control.incidence_difference.reset();
   FlightPlan plan;
   plan.duration = 0.05;
-  const Flight flight = fly(flight_vehicle(design), plan);
+  const FlightRecord flight = fly(flight_vehicle(design), plan);
   EXPECT_THAT(flight.design.uncontrolled, testing::ElementsAre(testing::HasSubstr("no control of roll")));
 }
 

@@ -131,7 +131,7 @@ struct TrackingError {
   double heading_rms = 0.0;  ///< [rad]
 };
 
-struct Flight {
+struct FlightRecord {
   TrimResult trim;
   ControllerDesign design;
   FlightOutcome outcome = FlightOutcome::completed;
@@ -145,6 +145,6 @@ struct Flight {
 };
 
 /// Throws ParameterError for a plan out of range and where no controller can be designed.
-Flight fly(const FlightVehicle& vehicle, const FlightPlan& plan);
+FlightRecord fly(const FlightVehicle& vehicle, const FlightPlan& plan);
 
 }  // namespace wingbeat

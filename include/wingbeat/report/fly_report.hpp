@@ -13,7 +13,7 @@ struct FlyReport {
   std::string title;
   const FlightVehicle* vehicle = nullptr;
   const FlightPlan* plan = nullptr;
-  Flight flight;
+  FlightRecord flight;
 };
 
 std::string text_fly(const FlyReport& report);
