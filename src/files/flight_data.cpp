@@ -62,8 +62,8 @@ std::vector<FlightColumn> flight_columns(const FlightVehicle& vehicle, bool batt
 
 }  // namespace
 
-void write_flight(const FlightFile& file, const FlightRecord& flight, const std::string& input, const std::string& version,
-                  const std::filesystem::path& output) {
+void write_flight(const FlightFile& file, const FlightRecord& flight, const std::string& input,
+                  const std::string& version, const std::filesystem::path& output) {
   NetcdfFile data(output);
   write_provenance(data, {.title = file.title.empty() ? "flight" : file.title,
                           .command = "fly",

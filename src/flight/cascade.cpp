@@ -36,7 +36,8 @@ void FlightController::design_cascade() {
     LoopGains& loop = design_.loops[a];
     loop.proportional = given.proportional.value_or(bandwidth / effect);
     loop.integral = given.integral.value_or(*loop.proportional * std::max(damping, bandwidth / integral_time));
-    loop.derivative = given.derivative.value_or(*loop.proportional * task_.actuator_lag[std::size_t(*design_.by_axis[a])]);
+    loop.derivative =
+        given.derivative.value_or(*loop.proportional * task_.actuator_lag[std::size_t(*design_.by_axis[a])]);
   }
 }
 

@@ -48,7 +48,8 @@ void validate(const FlightPlan& p) {
   require(between(p.max_tilt, 0.1, pi), "limits.tilt", "must be between 5.73 and 180 deg");
   require(p.max_distance > 0.0, "limits.distance", "must be > 0 m");
   require(!p.ground || *p.ground < p.height, "limits.ground", "must be below the height of the start");
-  require(p.controller.rate == 0.0 || between(p.controller.rate, 10.0, 1e4), "controller.rate", "must be between 10 Hz and 10 kHz");
+  require(p.controller.rate == 0.0 || between(p.controller.rate, 10.0, 1e4), "controller.rate",
+          "must be between 10 Hz and 10 kHz");
   require(p.sensors.rate == 0.0 || between(p.sensors.rate, 10.0, 1e4), "sensors.rate",
           "must be between 10 Hz and 10 kHz");
   require(between(p.sensors.delay, 0.0, 0.2), "sensors.delay", "must be between 0 and 200 ms");

@@ -59,8 +59,8 @@ std::string text_fly(const FlyReport& report) {
   if (f.rows.empty()) return text;
   for (const std::string& sentence : f.design.uncontrolled) text += "  " + sentence + "\n";
   const TrackingError& e = f.error;
-  text += fly_row("controller", fmt::format("{} at {:.4g} Hz, delay {:.3g} ms", name_of(f.design.type),
-                                            f.control_rate, 1e3 * f.design.delay));
+  text += fly_row("controller", fmt::format("{} at {:.4g} Hz, delay {:.3g} ms", name_of(f.design.type), f.control_rate,
+                                            1e3 * f.design.delay));
   text += fly_row("position error, horizontal",
                   fmt::format("{:.4g} m rms, {:.4g} m at most", e.horizontal_rms, e.horizontal_max));
   text += fly_row("position error, vertical",

@@ -22,7 +22,7 @@ struct FlightFile {
 FlightFile read_flight_file(const std::filesystem::path& file, std::span<const std::string> overrides = {});
 
 /// The rows of a flight over time, with the whole input. `input` is the text of the flight file. Throws NetcdfError.
-void write_flight(const FlightFile& file, const FlightRecord& flight, const std::string& input, const std::string& version,
-                  const std::filesystem::path& output);
+void write_flight(const FlightFile& file, const FlightRecord& flight, const std::string& input,
+                  const std::string& version, const std::filesystem::path& output);
 
 }  // namespace wingbeat

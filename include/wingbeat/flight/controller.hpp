@@ -70,8 +70,8 @@ struct ControlTask {
   const FlightVehicle* vehicle = nullptr;
   TrimResult trim;
   FlightLinearModel linear;
-  double delay = 0.0;                                ///< from a motion to the command that answers it [s]
-  std::array<double, flight_control_count> lag{};    ///< time constant of each actuator and its drive [s]
+  double delay = 0.0;                                       ///< from a motion to the command that answers it [s]
+  std::array<double, flight_control_count> lag{};           ///< time constant of each actuator and its drive [s]
   std::array<double, flight_control_count> actuator_lag{};  ///< that of the actuator alone [s]
   std::array<double, flight_control_count> speed{};  ///< largest rate of each control [1/s of its unit]; 0: no limit
 };

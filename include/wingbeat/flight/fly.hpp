@@ -135,8 +135,8 @@ struct FlightRecord {
   TrimResult trim;
   ControllerDesign design;
   FlightOutcome outcome = FlightOutcome::completed;
-  std::string detail;  ///< a sentence
-  double end = 0.0;    ///< [s]
+  std::string detail;         ///< a sentence
+  double end = 0.0;           ///< [s]
   double control_rate = 0.0;  ///< [Hz]
   std::vector<FlightRow> rows;
   FlightEnergy energy;
