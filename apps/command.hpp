@@ -42,6 +42,7 @@ void add_synthesise(CLI::App& program, Action& action);
 void add_validate(CLI::App& program, Action& action);
 void add_trim(CLI::App& program, Action& action);
 void add_stability(CLI::App& program, Action& action);
+void add_fly(CLI::App& program, Action& action);
 void add_keys(CLI::App& program, Action& action);
 void add_metrics(CLI::App& program, Action& action);
 void add_schema(CLI::App& program, Action& action);

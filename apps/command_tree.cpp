@@ -56,6 +56,7 @@ std::unique_ptr<CLI::App> command_tree(Action& action) {
   add_validate(*program, action);
   add_trim(*program, action);
   add_stability(*program, action);
+  add_fly(*program, action);
   add_keys(*program, action);
   add_metrics(*program, action);
   add_schema(*program, action);

@@ -25,6 +25,7 @@ nlohmann::ordered_json kinematics_schema();  ///< of export-kinematics
 nlohmann::ordered_json loads_schema();       ///< of compare-loads
 nlohmann::ordered_json trim_schema();
 nlohmann::ordered_json stability_schema();
+nlohmann::ordered_json fly_schema();
 nlohmann::ordered_json keys_schema();
 nlohmann::ordered_json metrics_schema();
 

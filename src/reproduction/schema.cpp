@@ -33,7 +33,7 @@ Json linearise_schema() {
                          schema::with_text(described::two_sides_maps_schema(), "sides that differ")});
 }
 
-constexpr std::array<std::pair<std::string_view, Json (*)()>, 20> schemas = {
+constexpr std::array<std::pair<std::string_view, Json (*)()>, 21> schemas = {
     {{"run", run_schema},
      {"compare", described::comparison_schema},
      {"sweep", described::sweep_schema},
@@ -52,6 +52,7 @@ constexpr std::array<std::pair<std::string_view, Json (*)()>, 20> schemas = {
      {"compare-loads", described::loads_schema},
      {"trim", described::trim_schema},
      {"stability", described::stability_schema},
+     {"fly", described::fly_schema},
      {"keys", described::keys_schema},
      {"metrics", described::metrics_schema}}};
 
