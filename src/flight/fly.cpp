@@ -213,10 +213,10 @@ class FlightRun {
     FlightEnergy& e = flight_.energy;
     flight_.end = simulation_.time();
     e.electrical = total.electrical, e.motor = total.motor, e.friction = total.friction;
-    e.wing_air = total.wing_air, e.formulation = total.residual, e.body_air = total.body_air;
+    e.stops = total.stops, e.wing_air = total.wing_air, e.formulation = total.residual, e.body_air = total.body_air;
     e.stored = simulation_.stored_energy() - first_stored;
-    e.residual =
-        e.electrical + e.body_air - e.motor - e.friction - e.wing_air - e.formulation - (e.stored - e.controls);
+    e.residual = e.electrical + e.body_air - e.motor - e.friction - e.stops - e.wing_air - e.formulation -
+                 (e.stored - e.controls);
     e.body_stored = body_energy(vehicle_.body, simulation_.state().body, standard_gravity) - first_body;
     if (!(vehicle_.wing_mass > 0.0)) e.body_residual = e.body_air - e.body_stored;
     if (battery_.there()) e.battery = battery_.given();

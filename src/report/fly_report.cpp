@@ -79,6 +79,7 @@ std::string text_fly(const FlyReport& report) {
   text += fly_row("lost in motors and gearboxes", fmt::format("{:>12.6g}", E.motor));
   text += fly_row("lost in mechanism and hinges", fmt::format("{:>12.6g}", E.friction));
   text += fly_row("by the drives to the air", fmt::format("{:>12.6g}", E.wing_air));
+  if (E.stops != 0.0) text += fly_row("lost on stops of the pitching", fmt::format("{:>12.6g}", E.stops));
   if (E.formulation != 0.0)
     text += fly_row("not conserved by the formulation", fmt::format("{:>12.6g}", E.formulation));
   text += fly_row("stored more in body and drives", fmt::format("{:>12.6g}", E.stored));
@@ -99,6 +100,7 @@ const Description<FlightEnergy>& flight_energy_description() {
           .always("motor_j", "J", "lost in motors and gearboxes", &R::motor)
           .always("friction_j", "J", "lost in mechanism and hinges", &R::friction)
           .always("wing_air_j", "J", "by the drives to the air", &R::wing_air)
+          .always("stops_j", "J", "lost in impacts on stops of the pitching", &R::stops)
           .always("formulation_j", "J", "what the formulation of a crank fails to conserve", &R::formulation)
           .always("body_air_j", "J", "by the air on the body", &R::body_air)
           .always("stored_j", "J", "change of what drives and body store", &R::stored)

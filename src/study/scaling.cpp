@@ -13,11 +13,11 @@ namespace {
 /// Of quantities with the dimensions of a unit, at constant density, stress, speed and voltage.
 int exponent_of_unit(std::string_view unit) {
   constexpr std::pair<std::string_view, int> exponents[] = {
-      {"1", 0},       {"rad", 0}, {"m", 1},     {"m2", 2}, {"m4", 4},    {"m5", 5},        {"m2/s", 1},        {"s", 1},
-      {"Hz", -1},     {"kg", 3},  {"kg/m", 2},  {"kg/m2", 1}, {"kg/m3", 0},     {"kg m2", 5},       {"N m", 3},
-      {"N m/rad", 3}, {"N/m", 1}, {"N s/m", 2}, {"N/V", 2},   {"N m s/rad", 4}, {"N m s2/rad2", 5}, {"N m/A", 1},
-      {"V", 0},       {"1/V", 0}, {"A", 2},     {"ohm", -2},  {"H", -1},        {"C", 3},           {"F", 3},
-      {"J/kg", 0},    {"K", 0},   {"1/K", 0},   {"K/W", -2},  {"rad/m", -1},    {"rad/m3", -3}};
+      {"1", 0},     {"rad", 0},     {"m", 1},   {"m2", 2},    {"m4", 4},    {"m5", 5},        {"m2/s", 1},
+      {"s", 1},     {"Hz", -1},     {"kg", 3},  {"kg/m", 2},  {"kg/m2", 1}, {"kg/m3", 0},     {"kg m2", 5},
+      {"N m", 3},   {"N m/rad", 3}, {"N/m", 1}, {"N s/m", 2}, {"N/V", 2},   {"N m s/rad", 4}, {"N m s2/rad2", 5},
+      {"N m/A", 1}, {"V", 0},       {"1/V", 0}, {"A", 2},     {"ohm", -2},  {"H", -1},        {"C", 3},
+      {"F", 3},     {"J/kg", 0},    {"K", 0},   {"1/K", 0},   {"K/W", -2},  {"rad/m", -1},    {"rad/m3", -3}};
   for (const auto& [known, exponent] : exponents) {
     if (known == unit) return exponent;
   }

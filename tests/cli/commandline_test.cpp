@@ -51,7 +51,7 @@ const std::vector<std::string> commands = {"run",           "compare",   "sweep"
                                            "read-bench",    "fit",       "tolerance", "optimise",
                                            "endurance",     "reproduce", "new",       "scale",
                                            "keys",          "metrics",   "schema",    "export-kinematics",
-                                           "compare-loads", "trim",      "stability"};
+                                           "compare-loads", "trim",      "stability", "fly"};
 
 TEST_F(CommandLine, EveryHelpExampleWorksAsTyped) {
   for (const std::string& command : commands) {

@@ -113,6 +113,15 @@ count = 3
 """
 
 
+FLIGHT = """[study]
+vehicle = "{vehicle}"
+duration = "0.2 s"
+[controller]
+type = "{controller}"
+[sensors]
+delay = "2 ms"
+attitude = "0.5 deg"
+"""
 BENCH = """[bench]
 vehicle = "friction2022-springs"
 [[parameter]]
@@ -371,6 +380,10 @@ class Schema(unittest.TestCase):
         self.check("stability", "flight-friction2022", "--sensitivity")
         self.check("stability", "flight-purdue", "--speed", "0.2 m/s")
         self.everything_is_written("stability")
+        for name, vehicle, controller in [("regulated", "flight-x-wing-battery", "lqr"), ("pid", "flight-friction2022", "pid"),
+                                          ("purdue", "flight-purdue", "lqr")]:
+            self.check("fly", self.file(f"{name}.toml", FLIGHT.format(vehicle=vehicle, controller=controller)))
+        self.everything_is_written("fly")
 
     def test_endurance(self):
         lost = self.check("endurance", "friction2022-battery", "--set", "supply.cells=2", "--set", 'vehicle.mass="5 g"')

@@ -113,6 +113,7 @@ struct FlightRow {
 /// Energies of a whole flight [J].
 struct FlightEnergy {
   double electrical = 0.0, motor = 0.0, friction = 0.0;
+  double stops = 0.0;             ///< lost in impacts on stops of the pitching
   double wing_air = 0.0;          ///< by the drives, to the air
   double formulation = 0.0;       ///< what the formulation of a crank fails to conserve
   double body_air = 0.0;          ///< by the air, on the body
