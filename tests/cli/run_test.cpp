@@ -285,7 +285,7 @@ TEST_F(Run, BadInputIsSentencesOnStandardErrorAndStatus2) {
   std::ofstream(path("short.toml")) << "[supply]\ntype = \"constant\"\nvoltage = \"3 V\"\n";
   const std::vector<BadCase> cases = {
       {{}, "subcommand"},
-      {{"fly"}, "there is no command \"fly\""},
+      {{"glide"}, "there is no command \"glide\""},
       {{"run"}, "vehicle is required"},
       {{"run", plain, "--jsn"}, "--jsn"},
       {{"run", plain, "extra"}, "extra"},
