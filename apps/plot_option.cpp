@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
 
