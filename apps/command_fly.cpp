@@ -78,9 +78,9 @@ void add_fly(CLI::App& program, Action& action) {
   add_json(command, a->json);
   command->footer(
       "Example:\n  wingbeat fly fly-hover -o flight.nc --plot flight.svg\n\n"
-      "The controller, a linear-quadratic regulator or a cascade of PID loops, is designed from the linear model about\n"
-      "the trim that the flight starts from. docs/flight.md says what a flight file holds. The flight ends early where\n"
-      "the vehicle hits the ground, tips over, flies too far away, jams or has emptied its battery.\n\n"
+      "The controller, a linear-quadratic regulator or a cascade of PID loops, is designed from the linear model\n"
+      "about the trim that the flight starts from. docs/flight-fly.md says what a flight file holds. The flight ends\n"
+      "early where the vehicle hits the ground, tips over, flies too far away, jams or has emptied its battery.\n\n"
       "Exit status: 0 flown to the end, 2 bad input or usage, 3 the flight ends early or there is no trim,\n"
       "1 anything else.");
   command->callback([a, &action] {

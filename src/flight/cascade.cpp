@@ -27,8 +27,7 @@ void FlightController::design_cascade() {
   design_.position = options_.bandwidths.position.value_or(design_.velocity / separation);
   for (std::size_t a = 0; a < flight_axis_count; ++a) {
     if (!design_.by_axis[a]) continue;
-    const auto found = std::find(task_.linear.controls.begin(), task_.linear.controls.end(), *design_.by_axis[a]);
-    const double effect = task_.linear.B(steered_row[a], found - task_.linear.controls.begin());
+    const double effect = task_.linear.B(steered_row[a], task_.linear.column_of(*design_.by_axis[a]));
     const double damping = -task_.linear.A(steered_row[a], steered_row[a]);
     const double bandwidth = FlightAxis(a) == FlightAxis::climb ? design_.velocity : design_.rates;
     // Of x' = -d x + b u the gain w / b and the integral d w / b leave the pole -w.

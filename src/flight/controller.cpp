@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "flight/periodic_flight.hpp"
 #include "wingbeat/core/text.hpp"
 
 namespace wingbeat {
@@ -28,13 +29,10 @@ constexpr const char* left_alone[flight_axis_count] = {
 LinearPlant regulated_plant(const FlightLinearModel& linear, const TrimResult& trim) {
   constexpr double step = 1e-5;
   LinearPlant plant{Eigen::MatrixXd::Zero(12, 12), Eigen::MatrixXd::Zero(12, linear.B.cols())};
-  const BodyState body = steady_body(trim.condition, trim.roll, trim.pitch);
-  FlightVector at;
-  at << body.velocity[0], body.velocity[1], body.velocity[2], body.rates[0], body.rates[1], body.rates[2], trim.roll,
-      trim.pitch;
+  const FlightVector trimmed = detail::states_of(steady_body(trim.condition, trim.roll, trim.pitch));
   for (Index k = 0; k < 8; ++k) {
     for (Index j = 0; j < 8; ++j) plant.A(row_of_state[j], row_of_state[k]) = linear.A(j, k);
-    FlightVector above = at, below = at;
+    FlightVector above = trimmed, below = trimmed;
     above[k] += step, below[k] -= step;
     plant.A.block<4, 1>(0, row_of_state[k]) = (earth_rates(above) - earth_rates(below)) / (2.0 * step);
     plant.B.row(row_of_state[k]) = linear.B.row(k);
@@ -53,9 +51,8 @@ FlightController::FlightController(const ControllerOptions& options, ControlTask
   for (std::size_t a = 0; a < flight_axis_count; ++a) {
     std::optional<FlightControl>& control = design_.by_axis[a];
     if (control) {
-      const auto found = std::find(task_.linear.controls.begin(), task_.linear.controls.end(), *control);
-      const Index column = found - task_.linear.controls.begin();
-      if (found == task_.linear.controls.end() || task_.linear.B(steered_row[a], column) == 0.0) control.reset();
+      const Index column = task_.linear.column_of(*control);
+      if (column < 0 || task_.linear.B(steered_row[a], column) == 0.0) control.reset();
     }
     if (control) {
       design_.controls.push_back(*control);

@@ -231,8 +231,7 @@ MatrixXd speed_slopes(const FlightVehicle& vehicle, const FlightLinearModel& mod
   if (const auto of_pitch = pitch_control(vehicle)) controls.push_back(*of_pitch);
   MatrixXd slopes(2, Eigen::Index(controls.size()));
   for (std::size_t k = 0; k < controls.size(); ++k) {
-    const auto found = std::find(model.controls.begin(), model.controls.end(), controls[k]);
-    const FlightVector change = -model.A.partialPivLu().solve(model.B.col(found - model.controls.begin()));
+    const FlightVector change = -model.A.partialPivLu().solve(model.B.col(model.column_of(controls[k])));
     constexpr double part = 1e-6;
     slopes.col(Eigen::Index(k)) =
         (speeds_of(trimmed + part * change) - speeds_of(trimmed - part * change)) / (2.0 * part);

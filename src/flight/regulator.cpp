@@ -49,7 +49,43 @@ RegulatedState deviation_from(const FlightMeasurement& m, const FlightReference&
   return e;
 }
 
+/// A sampled plant whose commands act so many steps later: those on their way are states, the newest first.
+LinearPlant with_delay(const LinearPlant& once, Index steps) {
+  const Index n = once.A.rows(), nu = once.B.cols(), size = n + steps * nu;
+  if (steps == 0) return once;
+  LinearPlant delayed{MatrixXd::Zero(size, size), MatrixXd::Zero(size, nu)};
+  delayed.A.topLeftCorner(n, n) = once.A;
+  delayed.A.block(0, size - nu, n, nu) = once.B;
+  delayed.B.block(n, 0, nu, nu).setIdentity();
+  if (steps > 1) delayed.A.block(n + nu, n, (steps - 1) * nu, (steps - 1) * nu).setIdentity();
+  return delayed;
+}
+
 }  // namespace
+
+/// States that are kept, integrals, actuators.
+LinearPlant FlightController::plant_with_actuators() const {
+  const LinearPlant whole = regulated_plant(task_.linear, task_.trim);
+  const Index nx = Index(kept_.size()), ni = Index(integrated_.size()), nu = Index(design_.controls.size());
+  const Index n = nx + ni + nu;
+  LinearPlant plant{MatrixXd::Zero(n, n), MatrixXd::Zero(n, nu)};
+  for (Index i = 0; i < nx; ++i) {
+    for (Index j = 0; j < nx; ++j) plant.A(i, j) = whole.A(kept_[std::size_t(i)], kept_[std::size_t(j)]);
+  }
+  for (Index i = 0; i < ni; ++i) plant.A(nx + i, integrated_[std::size_t(i)]) = 1.0;
+  for (Index c = 0; c < nu; ++c) {
+    const FlightControl which = design_.controls[std::size_t(c)];
+    const VectorXd column = whole.B.col(task_.linear.column_of(which));
+    const double lag = task_.lag[std::size_t(which)];
+    const bool lags = lag > 0.1 * step_;
+    for (Index i = 0; i < nx; ++i) {
+      (lags ? plant.A(i, nx + ni + c) : plant.B(i, c)) = column[kept_[std::size_t(i)]];
+    }
+    plant.A(nx + ni + c, nx + ni + c) = -1.0 / std::max(lag, 0.1 * step_);
+    plant.B(nx + ni + c, c) = 1.0 / std::max(lag, 0.1 * step_);
+  }
+  return plant;
+}
 
 void FlightController::design_regulator() {
   std::vector<bool> wanted(regulated_state_count, false);
@@ -67,38 +103,8 @@ void FlightController::design_regulator() {
   }
   const Index nx = Index(kept_.size()), ni = Index(integrated_.size()), nu = Index(design_.controls.size());
   if (nu == 0) throw ParameterError("controller.type", "the vehicle has no control that acts on its flight");
-  const LinearPlant whole = regulated_plant(task_.linear, task_.trim);
-  // States, integrals, actuators.
-  const Index n = nx + ni + nu;
-  LinearPlant plant{MatrixXd::Zero(n, n), MatrixXd::Zero(n, nu)};
-  for (Index i = 0; i < nx; ++i) {
-    for (Index j = 0; j < nx; ++j) plant.A(i, j) = whole.A(kept_[std::size_t(i)], kept_[std::size_t(j)]);
-  }
-  for (Index i = 0; i < ni; ++i) plant.A(nx + i, integrated_[std::size_t(i)]) = 1.0;
-  for (Index c = 0; c < nu; ++c) {
-    const FlightControl which = design_.controls[std::size_t(c)];
-    const auto found = std::find(task_.linear.controls.begin(), task_.linear.controls.end(), which);
-    const VectorXd column = whole.B.col(found - task_.linear.controls.begin());
-    const double lag = task_.lag[std::size_t(which)];
-    const bool lags = lag > 0.1 * step_;
-    for (Index i = 0; i < nx; ++i) {
-      (lags ? plant.A(i, nx + ni + c) : plant.B(i, c)) = column[kept_[std::size_t(i)]];
-    }
-    plant.A(nx + ni + c, nx + ni + c) = -1.0 / std::max(lag, 0.1 * step_);
-    plant.B(nx + ni + c, c) = 1.0 / std::max(lag, 0.1 * step_);
-  }
-  const LinearPlant once = sampled(plant, step_);
-  // Commands on their way: u(k - m) acts first.
-  const Index m = Index(std::lround(task_.delay / step_)), size = n + m * nu;
-  LinearPlant delayed{MatrixXd::Zero(size, size), MatrixXd::Zero(size, nu)};
-  delayed.A.topLeftCorner(n, n) = once.A;
-  if (m == 0) {
-    delayed.B.topRows(n) = once.B;
-  } else {
-    delayed.A.block(0, size - nu, n, nu) = once.B;
-    delayed.B.block(n, 0, nu, nu).setIdentity();
-    if (m > 1) delayed.A.block(n + nu, n, (m - 1) * nu, (m - 1) * nu).setIdentity();
-  }
+  const Index m = Index(std::lround(task_.delay / step_)), n = nx + ni + nu, size = n + m * nu;
+  const LinearPlant delayed = with_delay(sampled(plant_with_actuators(), step_), m);
   const RegulatedState sizes = bryson_sizes(options_.sizes);
   const double share = options_.sizes.controls > 0.0 ? options_.sizes.controls : task_.vehicle->direct ? 0.1 : 0.5;
   MatrixXd Q = MatrixXd::Zero(size, size), R = MatrixXd::Zero(nu, nu);

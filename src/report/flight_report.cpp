@@ -46,8 +46,8 @@ std::string periodic_text(const StabilityReport& report) {
   const PeriodicFlight& p = *report.result.periodic;
   const FlightControls& averaged = report.result.trim.controls;
   std::string text = fmt::format(
-      "\nThe whole flight, in which the body shakes with the wingbeat, drifts at the controls above by {:.3g} m/s ahead "
-      "and\n{:.3g} m/s downwards; it is in trim at",
+      "\nThe whole flight, in which the body shakes with the wingbeat, drifts at the controls above by {:.3g} m/s "
+      "ahead and\n{:.3g} m/s downwards; it is in trim at",
       cleared(p.drift[0]), cleared(p.drift[1]));
   for (std::size_t k = 0; k < flight_control_count; ++k) {
     if (averaged.at[k] == p.controls.at[k]) continue;

@@ -61,12 +61,13 @@ std::string text_fly(const FlyReport& report) {
   const TrackingError& e = f.error;
   text += fly_row("controller", fmt::format("{} at {:.4g} Hz, delay {:.3g} ms", name_of(f.design.type), f.control_rate,
                                             1e3 * f.design.delay));
+  // No more digits than hold at a smaller tolerance: the phase of the wings carries rounding on to about 1 % of them.
   text += fly_row("position error, horizontal",
-                  fmt::format("{:.4g} m rms, {:.4g} m at most", e.horizontal_rms, e.horizontal_max));
+                  fmt::format("{:.2g} m rms, {:.2g} m at most", e.horizontal_rms, e.horizontal_max));
   text += fly_row("position error, vertical",
-                  fmt::format("{:.4g} m rms, {:.4g} m at most", e.vertical_rms, e.vertical_max));
-  text += fly_row("heading error", fmt::format("{:.4g} deg rms", degrees_per_radian * e.heading_rms));
-  text += fly_row("largest tilt", fmt::format("{:.4g} deg", degrees_per_radian * e.tilt_max));
+                  fmt::format("{:.2g} m rms, {:.2g} m at most", e.vertical_rms, e.vertical_max));
+  text += fly_row("heading error", fmt::format("{:.2g} deg rms", degrees_per_radian * e.heading_rms));
+  text += fly_row("largest tilt", fmt::format("{:.2g} deg", degrees_per_radian * e.tilt_max));
   text += fly_row("mean electrical power", fmt::format("{:.4g} W", f.mean_power));
   if (std::isfinite(f.rows.back().charge)) {
     text += fly_row("charge of the battery",

@@ -131,7 +131,7 @@ class Simulations(unittest.TestCase):
         flight = flyer().flight_simulation()
         for act, text in (
             (lambda: wb.read("friction2022").flight_simulation(), "^body.inertia_pitch: missing: flight needs"),
-            (lambda: flight.command({"bias": 1}), "^bias: the vehicle has no such control; it has voltage, mean_stroke"),
+            (lambda: flight.command({"bias": 1}), "^bias: the vehicle has no such control; it has voltage, mean"),
             (lambda: flight.command({"voltage": np.nan}), "^voltage: must be finite"),
             (lambda: flight.start(drives=np.zeros((2, 9))), r"^drives: expected an array of 1 by 9, got \(2, 9\)"),
             (lambda: flight.step_to(-1), "^time: must be finite and not in the past"),
@@ -256,20 +256,20 @@ class Loads(unittest.TestCase):
     """The functions of C for a body that another program moves."""
 
     def setUp(self):
-        self.library = ctypes.CDLL(str(LOADS))
-        self.library.wingbeat_flight_create.restype = ctypes.c_void_p
+        self.loads = ctypes.CDLL(str(LOADS))
+        self.loads.wingbeat_flight_create.restype = ctypes.c_void_p
         for name in ("error", "control_name"):
-            getattr(self.library, f"wingbeat_flight_{name}").restype = ctypes.c_char_p
+            getattr(self.loads, f"wingbeat_flight_{name}").restype = ctypes.c_char_p
 
     def call(self, name, flight, *given):
         """Calls a function; arrays of NumPy are pointers."""
         as_c = [x.ctypes.data_as(ctypes.c_void_p) if isinstance(x, np.ndarray) else ctypes.c_double(x) for x in given]
-        return getattr(self.library, f"wingbeat_flight_{name}")(ctypes.c_void_p(flight), *as_c)
+        return getattr(self.loads, f"wingbeat_flight_{name}")(ctypes.c_void_p(flight), *as_c)
 
     def test_a_step_from_a_turned_body(self):
         """Its mean force and torque are those of the flight in Python, in the axes of MuJoCo."""
         vehicle, step = flyer("flight-x-wing"), 1e-4
-        flight = self.library.wingbeat_flight_create(bytes(DATA / "designs" / "flight-x-wing.toml"))
+        flight = self.loads.wingbeat_flight_create(bytes(DATA / "designs" / "flight-x-wing.toml"))
         controls, qpos, qvel, force, torque = np.zeros(7), np.zeros(7), np.zeros(6), np.zeros(3), np.zeros(3)
         self.assertEqual(self.call("trim", flight, 0.0, controls, qpos, qvel), 0)
         self.assertAlmostEqual(controls[0], vehicle.trim().controls["voltage"], 12)
@@ -279,7 +279,7 @@ class Loads(unittest.TestCase):
         qpos[:] = [*(half_turn @ body.position), *(body.attitude * [1, 1, -1, -1])]
         qvel[:] = [*(half_turn @ body.rotation @ body.velocity), *(half_turn @ body.rates)]
         self.assertEqual(self.call("step", flight, qpos, qvel, step, controls, force, torque), 0)
-        self.library.wingbeat_flight_free(ctypes.c_void_p(flight))
+        self.loads.wingbeat_flight_free(ctypes.c_void_p(flight))
         alone, _ = in_trim(vehicle)
         alone.place(body)
         self.assertTrue(alone.step(step))
@@ -291,16 +291,16 @@ class Loads(unittest.TestCase):
         self.assertGreater(np.abs(torque).max(), 1e-3 * weight)
 
     def test_errors(self):
-        names = [self.library.wingbeat_flight_control_name(k) for k in range(8)]
+        names = [self.loads.wingbeat_flight_control_name(k) for k in range(8)]
         self.assertEqual(names[::4] + names[7:], [b"voltage", b"mean_stroke_angle", None])
-        self.assertIsNone(self.library.wingbeat_flight_create(b"nothing.toml"))
-        self.assertIn(b"nothing.toml", self.library.wingbeat_flight_error())
+        self.assertIsNone(self.loads.wingbeat_flight_create(b"nothing.toml"))
+        self.assertIn(b"nothing.toml", self.loads.wingbeat_flight_error())
         with tempfile.TemporaryDirectory() as folder:
             file = pathlib.Path(folder) / "heavy.toml"
             heavy = flyer().replace({"body.wing_mass": "50 mg", "body.wing_centre": "25 mm"})
             file.write_text(heavy.to_toml())
-            self.assertIsNone(self.library.wingbeat_flight_create(bytes(file)))
-            self.assertIn(b"body.wing_mass: ", self.library.wingbeat_flight_error())
+            self.assertIsNone(self.loads.wingbeat_flight_create(bytes(file)))
+            self.assertIn(b"body.wing_mass: ", self.loads.wingbeat_flight_error())
 
 
 if __name__ == "__main__":

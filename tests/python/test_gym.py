@@ -107,7 +107,8 @@ class Contract(unittest.TestCase):
             g = types.ModuleType("gymnasium"); v = types.ModuleType("gymnasium.vector"); made = {}
             class Env:
                 def reset(self, *, seed=None, options=None):
-                    if seed is not None: self._np_random = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
+                    if seed is not None:
+                        self._np_random = np.random.Generator(np.random.PCG64(np.random.SeedSequence(seed)))
                 np_random = property(lambda self: self._np_random)
             class Box:
                 def __init__(self, low, high, dtype=None): self.low, self.high, self.shape = low, high, low.shape
@@ -165,7 +166,8 @@ class Tasks(unittest.TestCase):
                                euler_angles=[0.2, -0.1, 0.4])
         observation, info = env.reset(seed=0, options={"body": body})
         turn = body.rotation
-        expected = [*(turn.T @ -body.position), *(-body.velocity / 2), *turn[2], *turn[0], *(body.rates / 10), 0, 0, 0, 0]
+        expected = [
+            *(turn.T @ -body.position), *(-body.velocity / 2), *turn[2], *turn[0], *(body.rates / 10), 0, 0, 0, 0]
         np.testing.assert_allclose(observation, expected, rtol=1e-6, atol=1e-7)
         self.assertAlmostEqual(info["distance"], np.linalg.norm(body.position))
         action = np.array([0.1, -0.2, 0.3, 0.0])

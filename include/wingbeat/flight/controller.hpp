@@ -128,6 +128,7 @@ class FlightController {
 
  private:
   void design_regulator();
+  LinearPlant plant_with_actuators() const;
   void design_cascade();
   FlightControls regulate(const FlightMeasurement& m, const FlightReference& r);
   FlightControls cascade(const FlightMeasurement& m, const FlightReference& r);

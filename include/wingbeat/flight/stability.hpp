@@ -3,6 +3,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <complex>
 #include <optional>
@@ -25,6 +26,12 @@ struct FlightLinearModel {
   FlightMatrix A = FlightMatrix::Zero();
   Eigen::MatrixXd B;                    ///< a column for each of `controls`
   std::vector<FlightControl> controls;  ///< those that the vehicle has
+
+  /// The column of a control in B; -1 of one that the vehicle does not have.
+  Eigen::Index column_of(FlightControl control) const {
+    const auto found = std::find(controls.begin(), controls.end(), control);
+    return found == controls.end() ? -1 : Eigen::Index(found - controls.begin());
+  }
 };
 
 /// One mode by either way, of a complex pair the one of positive imaginary part: within its kind of motion, by
