@@ -94,7 +94,7 @@ int run_stability(const FlightArguments& a) {
   AveragedFlight flight(vehicle);
   const TrimResult steady = trim(flight, condition);
   StabilityReport report{title_of(a, vehicle), {}, {}};
-  const bool flies = steady.status == TrimStatus::trimmed || steady.status == TrimStatus::beyond_controls;
+  const bool flies = steady.flies();
   if (flies) report.result = flight_stability(flight, steady);
   else report.result.trim = steady;
   if (flies && a.sensitivity) report.sensitivities = mode_sensitivities(design, condition);

@@ -162,7 +162,7 @@ py::dict stability_of(const Design<double>& design, double speed, double climb, 
   listening([&] {
     AveragedFlight flight(vehicle);
     const TrimResult steady = trim(flight, condition);
-    if (steady.status != TrimStatus::trimmed && steady.status != TrimStatus::beyond_controls) {
+    if (!steady.flies()) {
       report.result.trim = steady;
       return 0;
     }

@@ -277,8 +277,7 @@ FlightRecord fly(const FlightVehicle& vehicle, const FlightPlan& asked) {
   if (!by_hand) {
     AveragedFlight averaged(vehicle, {.tolerance = 1e-8});
     flight.trim = trim(averaged, plan.condition);
-    const TrimStatus status = flight.trim.status;
-    if (status != TrimStatus::trimmed && status != TrimStatus::beyond_controls) {
+    if (!flight.trim.flies()) {
       flight.outcome = FlightOutcome::no_trim;
       flight.detail = "There is no trim to start from: " + flight.trim.detail + ".";
       return flight;

@@ -121,7 +121,7 @@ Complex least_stable(const FlightMatrix& A) {
 }  // namespace
 
 std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const TrimResult& steady) {
-  if (!steady.flight) return std::nullopt;
+  if (!steady.flies()) return std::nullopt;
   const Body& body = flight.vehicle().body;
   const FlightVector trimmed = states_of(steady_body(steady.condition, steady.roll, steady.pitch)),
                      steps = steps_of(flight, steady);
@@ -189,7 +189,7 @@ std::vector<ModeSensitivity> mode_sensitivities(const Design<double>& design, co
   std::vector<ModeSensitivity> found;
   AveragedFlight stated(flight_vehicle(design), options.cycle);
   const TrimResult near = trim(stated, condition, options);
-  if (near.status != TrimStatus::trimmed && near.status != TrimStatus::beyond_controls) return found;
+  if (!near.flies()) return found;
   const auto eigenvalue = [&](const Parameter<double>& parameter, double value) -> std::optional<Complex> {
     Design<double> changed = design;
     if (!parameter.set(changed, value)) return std::nullopt;
@@ -197,7 +197,7 @@ std::vector<ModeSensitivity> mode_sensitivities(const Design<double>& design, co
       validate(changed);
       AveragedFlight flight(flight_vehicle(changed), options.cycle);
       const TrimResult steady = trim(flight, condition, options, &near);
-      if (steady.status != TrimStatus::trimmed && steady.status != TrimStatus::beyond_controls) return std::nullopt;
+      if (!steady.flies()) return std::nullopt;
       const std::optional<FlightLinearModel> model = linear_flight(flight, steady);
       if (!model) return std::nullopt;
       return least_stable(model->A);

@@ -264,8 +264,6 @@ TrimResult trim(AveragedFlight& flight, const FlightCondition& condition, const 
     }
     if (!taken) break;
   }
-  result.power = result.flight->electrical;
-  result.frequency = 1.0 / result.flight->cycles[0].period;
   const Triple& a = result.acceleration;
   if (off > options.tolerance) {
     return ends(
@@ -285,6 +283,8 @@ TrimResult trim(AveragedFlight& flight, const FlightCondition& condition, const 
                                axis, inertia_times(vehicle.body, result.angular_acceleration)[equation - 3], weight,
                                1e3 * inertia_times(vehicle.body, result.angular_acceleration)[equation - 3] / weight));
   }
+  result.power = result.flight->electrical;
+  result.frequency = 1.0 / result.flight->cycles[0].period;
   const std::string beyond = range_sentence(vehicle, result.controls);
   if (!beyond.empty()) return ends(TrimStatus::beyond_controls, beyond);
   return ends(TrimStatus::trimmed, "all mean accelerations vanish");
@@ -297,8 +297,7 @@ std::vector<TrimResult> trim_all(const FlightVehicle& vehicle, const std::vector
   std::optional<TrimResult> near;
   for (const FlightCondition& condition : conditions) {
     results.push_back(trim(flight, condition, options, near ? &*near : nullptr));
-    const TrimStatus status = results.back().status;
-    if (status == TrimStatus::trimmed || status == TrimStatus::beyond_controls) near = results.back();
+    if (results.back().flies()) near = results.back();
   }
   return results;
 }

@@ -69,7 +69,7 @@ void plot_trim(const FlightVehicle& vehicle, const TrimReport& report, PlotForma
   figure.add("$flights << END\n");
   bool beyond = false;
   for (const TrimResult& t : report.flights) {
-    if (!t.flight || t.status == TrimStatus::untrimmable) continue;
+    if (!t.flies()) continue;
     beyond |= t.status == TrimStatus::beyond_controls;
     figure.add("{} {}", t.condition.speed, t.status == TrimStatus::trimmed ? 1 : 0);
     for (const TrimCurve& curve : curves) figure.add(" {}", curve.value(t));
@@ -82,7 +82,7 @@ void plot_trim(const FlightVehicle& vehicle, const TrimReport& report, PlotForma
     const double top = 1.0 - (head + gap + (each + gap) * double(p)) / inches, bottom = top - each / inches;
     double low = infinity, high = -infinity;
     for (const TrimResult& t : report.flights) {
-      if (!t.flight || t.status == TrimStatus::untrimmable) continue;
+      if (!t.flies()) continue;
       low = std::min(low, curves[p].value(t)), high = std::max(high, curves[p].value(t));
     }
     if (!(low <= high)) low = 0.0, high = 1.0;

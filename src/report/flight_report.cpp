@@ -75,7 +75,7 @@ std::string text_trim(const FlightVehicle& vehicle, const TrimReport& report) {
   if (!several) {
     const TrimResult& t = report.flights.front();
     text += fmt::format("{}\n  {}: {}\n", report.vehicle, name_of(t.status), t.detail);
-    if (!t.flight) return text;
+    if (!t.flies()) return text;
     text += fmt::format("  {:<34}{:>12.5g} m/s, climb {:.4g} m/s, turn {:.4g} rad/s\n", "speed", t.condition.speed,
                         t.condition.climb, t.condition.turn_rate);
     text += fmt::format("  {:<34}{:>12.5g} deg\n", "pitch attitude, nose up", cleared(degrees_per_radian * t.pitch));
@@ -104,10 +104,13 @@ std::string text_trim(const FlightVehicle& vehicle, const TrimReport& report) {
   for (const TrimResult& t : report.flights) {
     const double control =
         of_pitch ? t.controls[*of_pitch] * (*of_pitch == FlightControl::bias ? 1.0 : degrees_per_radian) : absent;
-    text += fmt::format("{:>9.4g} {:>8.4g} {:>9.4g} {:>10.5g} {:>9.4g} {:>9.4g} {:>10} {:>9}  {}\n", t.condition.speed,
-                        t.condition.climb, cleared(degrees_per_radian * t.pitch), t.controls[FlightControl::voltage],
-                        cleared(control), t.power, time_text(endurance_of(report, t)), time_text(range_of(report, t)),
-                        name_of(t.status));
+    const auto shown = [&](double x, int digits) {
+      return t.flies() ? fmt::format("{:.{}g}", cleared(x), digits) : std::string("-");
+    };
+    text += fmt::format("{:>9.4g} {:>8.4g} {:>9} {:>10} {:>9} {:>9} {:>10} {:>9}  {}\n", t.condition.speed,
+                        t.condition.climb, shown(degrees_per_radian * t.pitch, 4),
+                        shown(t.controls[FlightControl::voltage], 5), shown(control, 4), shown(t.power, 4),
+                        time_text(endurance_of(report, t)), time_text(range_of(report, t)), name_of(t.status));
   }
   for (const TrimResult& t : report.flights) {
     if (t.status != TrimStatus::trimmed) text += fmt::format("{:g} m/s: {}\n", t.condition.speed, t.detail);
@@ -175,15 +178,16 @@ const Description<TrimResult>& trim_description() {
                 [](const R& r) { return r.condition.turn_rate; })
         .always("status", "", "", &R::status)
         .always("status_detail", "", "a sentence", &R::detail)
-        .always("pitch_rad", "rad", "attitude, nose up", &R::pitch)
-        .always("roll_rad", "rad", "right wing down", &R::roll)
+        .always("pitch_rad", "rad", "attitude, nose up; null, as all below, where it does not fly so",
+                [](const R& r) { return r.flies() ? r.pitch : absent; })
+        .always("roll_rad", "rad", "right wing down", [](const R& r) { return r.flies() ? r.roll : absent; })
         .always("frequency_hz", "Hz", "of the first drive", &R::frequency)
         .always("power_electrical_w", "W", "mean, at the terminals of all drives", &R::power);
     for (std::size_t k = 0; k < flight_control_count; ++k) {
       const std::string_view unit = flight_control_units[k];
       const char* suffix = unit == "V" ? "_v" : unit == "rad" ? "_rad" : "";
       d.always(std::string("control_") + name_of(FlightControl(k)) + suffix, unit, "",
-               [k](const R& r) { return r.controls.at[k]; });
+               [k](const R& r) { return r.flies() ? r.controls.at[k] : absent; });
     }
     return d;
   }();

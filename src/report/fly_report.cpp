@@ -20,7 +20,7 @@ std::string fly_row(const char* name, const std::string& value) { return fmt::fo
 std::string regulator_text(const ControllerDesign& d) {
   std::string text = "\nRegulator: gains of each control by the deviations, SI\n" + fmt::format("  {:<26}", "");
   for (const char* name : regulated_state_names) {
-    text += fmt::format("{:>9}", std::string(name).substr(0, std::string(name).find('_')));
+    text += fmt::format("{:>10}", std::string(name).substr(0, std::string(name).find('_')));
   }
   text += "\n";
   for (std::size_t c = 0; c < d.controls.size(); ++c) {
@@ -28,7 +28,7 @@ std::string regulator_text(const ControllerDesign& d) {
     for (Eigen::Index k = 0; k < d.gains.cols(); ++k) {
       const double gain = d.gains(Eigen::Index(c), k);
       const double largest = d.gains.row(Eigen::Index(c)).cwiseAbs().maxCoeff();
-      text += fmt::format("{:>9.3g}", std::abs(gain) < 1e-6 * largest ? 0.0 : gain);
+      text += fmt::format("{:>10.3g}", std::abs(gain) < 1e-6 * largest ? 0.0 : gain);
     }
     text += "\n";
   }

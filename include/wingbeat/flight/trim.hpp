@@ -44,6 +44,8 @@ struct TrimResult {
   Triple acceleration{};           ///< what is left, in body axes [m/s2]
   Triple angular_acceleration{};   ///< [rad/s2]
   std::optional<MeanFlight> flight;
+  /// Whether it flies so; controls, attitude and flight of others are those of the last try.
+  bool flies() const { return status == TrimStatus::trimmed || status == TrimStatus::beyond_controls; }
   /// Mean power at the terminals [W]; absent where it does not fly.
   double power = absent;
   double frequency = absent;  ///< of the first drive [Hz]
