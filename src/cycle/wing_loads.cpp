@@ -1,12 +1,13 @@
 #include "wingbeat/cycle/wing_loads.hpp"
 
-#include <Eigen/Dense>
 #include <cmath>
 #include <variant>
+#include <vector>
 
 #include "cycle/loads_system.hpp"
 #include "wingbeat/cycle/cycle_gradient.hpp"
 #include "wingbeat/solve/periodic.hpp"
+#include "wingbeat/solve/singular_values.hpp"
 
 namespace wingbeat {
 namespace {
@@ -35,19 +36,18 @@ WingLoads mean_loads(const solver::Iterate<System>& cycle) {
 class FixedPointSlopes {
  public:
   FixedPointSlopes(const Eigen::MatrixXd& by_state, const Eigen::MatrixXd& by_input)
-      : svd_(Eigen::MatrixXd::Identity(by_state.rows(), by_state.rows()) - by_state,
-             Eigen::ComputeFullU | Eigen::ComputeFullV) {
+      : svd_(solver::singular_values(Eigen::MatrixXd::Identity(by_state.rows(), by_state.rows()) - by_state)) {
     const Eigen::Index states = by_state.rows();
     drifts_.assign(std::size_t(by_input.cols()), false);
     slopes_ = Eigen::MatrixXd::Zero(states, by_input.cols());
-    const Eigen::MatrixXd along = svd_.matrixU().transpose() * by_input;
+    const Eigen::MatrixXd along = svd_.U.transpose() * by_input;
     for (Eigen::Index n = 0; n < states; ++n) {
-      const double stretch = svd_.singularValues()[n];
+      const double stretch = svd_.sizes[n];
       if (stretch > free) {
-        slopes_ += svd_.matrixV().col(n) * along.row(n) / stretch;
+        slopes_ += svd_.V.col(n) * along.row(n) / stretch;
         continue;
       }
-      free_.push_back(svd_.matrixV().col(n));
+      free_.push_back(svd_.V.col(n));
       for (Eigen::Index k = 0; k < by_input.cols(); ++k) {
         const double size = by_input.col(k).norm();
         if (std::abs(along(n, k)) > free * size) drifts_[std::size_t(k)] = true;
@@ -66,7 +66,7 @@ class FixedPointSlopes {
 
  private:
   static constexpr double free = 1e-7;  ///< |1 - multiplier| at which a cycle does not return what drifts
-  Eigen::JacobiSVD<Eigen::MatrixXd> svd_;
+  solver::SingularValues svd_;
   Eigen::MatrixXd slopes_;
   std::vector<Eigen::VectorXd> free_;
   std::vector<bool> drifts_;

@@ -1,6 +1,6 @@
 #include "wingbeat/flight/cycle.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>

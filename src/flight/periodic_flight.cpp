@@ -1,13 +1,14 @@
 #include "flight/periodic_flight.hpp"
 
-#include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "wingbeat/solve/eigenvalues.hpp"
 #include "wingbeat/vehicle/unknowns.hpp"
 
 namespace wingbeat::detail {
@@ -273,11 +274,15 @@ std::optional<PeriodicFlight> periodic_flight(const FlightVehicle& vehicle, cons
     flight.period = search.period();
     flight.mismatch = search.off();
     const MatrixXd monodromy = search.monodromy();
-    const Eigen::EigenSolver<MatrixXd> found(monodromy);
+    const solver::EigenModes found = solver::eigen_modes(monodromy);
+    if (!found.found) {
+      detail = "the multipliers of the flight over a wingbeat did not converge";
+      return std::nullopt;
+    }
     for (Eigen::Index n = 0; n < monodromy.rows(); ++n) {
       bool longitudinal = false;
-      shape_of(found.eigenvectors().col(n).tail(8), steps, longitudinal);
-      flight.multipliers.push_back(found.eigenvalues()[n]);
+      shape_of(found.vectors.col(n).tail(8), steps, longitudinal);
+      flight.multipliers.push_back(found.values[n]);
       flight.longitudinal.push_back(longitudinal);
     }
     return flight;

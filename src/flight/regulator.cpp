@@ -1,5 +1,5 @@
 // The linear-quadratic regulator of flight: sampled, with integrals, actuators and delay as states of its own.
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 

@@ -1,10 +1,12 @@
 #include "wingbeat/flight/riccati.hpp"
 
-#include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "wingbeat/solve/eigenvalues.hpp"
 
 namespace wingbeat {
 
@@ -45,23 +47,22 @@ std::optional<Regulator> continuous_regulator(const LinearPlant& plant, const Ma
   const MatrixXd S = plant.B * through;
   MatrixXd H(2 * n, 2 * n);
   H << plant.A, -S, -Q, -plant.A.transpose();
-  const Eigen::ComplexEigenSolver<MatrixXd> modes(H);
-  if (modes.info() != Eigen::Success) return std::nullopt;
+  const solver::EigenModes modes = solver::eigen_modes(H);
+  if (!modes.found) return std::nullopt;
   // Eigenvalues come in pairs on either side of the imaginary axis; on it there is no stable subspace.
-  const double least = 1e-9 * std::max(1e-300, modes.eigenvalues().cwiseAbs().maxCoeff());
+  const double least = 1e-9 * std::max(1e-300, modes.values.cwiseAbs().maxCoeff());
   std::vector<Eigen::Index> stable;
   for (Eigen::Index k = 0; k < 2 * n; ++k) {
-    if (modes.eigenvalues()[k].real() < -least) stable.push_back(k);
+    if (modes.values[k].real() < -least) stable.push_back(k);
   }
   if (Eigen::Index(stable.size()) != n) return std::nullopt;
-  Eigen::MatrixXcd upper(n, n), lower(n, n);
+  MatrixXd upper(n, n), lower(n, n);
   for (Eigen::Index k = 0; k < n; ++k) {
-    upper.col(k) = modes.eigenvectors().col(stable[std::size_t(k)]).head(n);
-    lower.col(k) = modes.eigenvectors().col(stable[std::size_t(k)]).tail(n);
+    upper.col(k) = modes.real_vectors.col(stable[std::size_t(k)]).head(n);
+    lower.col(k) = modes.real_vectors.col(stable[std::size_t(k)]).tail(n);
   }
   // P = lower upper^-1.
-  const Eigen::MatrixXcd transposed = upper.transpose().partialPivLu().solve(lower.transpose());
-  const MatrixXd found = transposed.transpose().real();
+  const MatrixXd found = upper.transpose().partialPivLu().solve(lower.transpose());
   Regulator result;
   result.P = 0.5 * (found + found.transpose());
   result.K = through * result.P;
@@ -103,7 +104,7 @@ std::optional<Regulator> discrete_regulator(const LinearPlant& plant, const Matr
 
 double spectral_radius(const MatrixXd& M) {
   if (M.rows() == 0) return 0.0;
-  return M.eigenvalues().cwiseAbs().maxCoeff();
+  return solver::eigenvalues_of(M).cwiseAbs().maxCoeff();
 }
 
 }  // namespace wingbeat

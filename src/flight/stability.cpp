@@ -1,7 +1,6 @@
 #include "wingbeat/flight/stability.hpp"
 
-#include <Eigen/Dense>
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -9,6 +8,7 @@
 #include <utility>
 
 #include "flight/periodic_flight.hpp"
+#include "wingbeat/solve/eigenvalues.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
 namespace wingbeat {
@@ -74,14 +74,14 @@ double growth_of(const FlightMode& mode) { return mode.averaged ? mode.averaged-
 
 /// Adds the modes of one kind of motion, both ways beside each other.
 void add_modes(bool longitudinal, const FlightVector& steps, StabilityResult& result) {
-  const Eigen::EigenSolver<FlightMatrix> modes(result.model->A);
+  const solver::EigenModes modes = solver::eigen_modes(result.model->A);
   std::vector<Complex> averaged, exponents;
   std::vector<std::pair<Complex, std::string>> shapes;
   for (Eigen::Index n = 0; n < 8; ++n) {
     bool along = false;
-    const std::string shape = shape_of(modes.eigenvectors().col(n), steps, along);
+    const std::string shape = shape_of(modes.vectors.col(n), steps, along);
     if (along != longitudinal) continue;
-    averaged.push_back(modes.eigenvalues()[n]);
+    averaged.push_back(modes.values[n]);
     shapes.push_back({averaged.back(), shape});
   }
   if (result.periodic) {
@@ -108,7 +108,7 @@ void add_modes(bool longitudinal, const FlightVector& steps, StabilityResult& re
 }
 
 Complex least_stable(const FlightMatrix& A) {
-  const Eigen::VectorXcd values = A.eigenvalues();
+  const Eigen::VectorXcd values = solver::eigenvalues_of(A);
   Complex found = values[0];
   for (const Complex& value : values) {
     if (value.real() > found.real() + 1e-12 || (value.real() > found.real() - 1e-12 && value.imag() > found.imag())) {

@@ -1,6 +1,6 @@
 #include "wingbeat/flight/trim.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 #include <utility>

@@ -1,6 +1,7 @@
 #include "wingbeat/flight/wing_reaction.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 
 namespace wingbeat {
 namespace {

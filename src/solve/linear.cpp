@@ -4,10 +4,12 @@
 #if defined(__GNUC__) && !defined(__clang__)
 #pragma GCC diagnostic ignored "-Wmaybe-uninitialized"
 #endif
-#include <Eigen/Dense>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <utility>
+
+#include "wingbeat/solve/eigenvalues.hpp"
 
 namespace wingbeat::solver {
 
@@ -155,8 +157,7 @@ double spectral_radius(int n, const double* matrix) {
     const double discriminant = half_difference * half_difference + matrix[1] * matrix[2];
     return discriminant >= 0.0 ? std::abs(half_trace) + std::sqrt(discriminant) : std::sqrt(determinant);
   }
-  const Eigen::MatrixXd A = Eigen::Map<const RowMajor>(matrix, n, n);
-  return A.eigenvalues().cwiseAbs().maxCoeff();
+  return eigenvalues_of(Eigen::Map<const RowMajor>(matrix, n, n)).cwiseAbs().maxCoeff();
 }
 
 }  // namespace wingbeat::solver

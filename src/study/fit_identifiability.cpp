@@ -1,12 +1,13 @@
 #include "study/fit_identifiability.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 #include <functional>
 
 #include "study/bench_unknowns.hpp"
 #include "study/fit_covariance.hpp"
+#include "wingbeat/solve/singular_values.hpp"
 
 namespace wingbeat {
 namespace {
@@ -90,13 +91,13 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
   };
   std::vector<FitFinding> free_directions, rough_directions;
   if (m > 0) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(restricted(all));
+    const solver::SymmetricModes eigen = solver::symmetric_modes(restricted(all));
     for (Eigen::Index d = m - 1; d >= 0; --d) {
-      const double lambda = eigen.eigenvalues()[d];
-      const double least = 1e-14 * std::max(eigen.eigenvalues()[m - 1], 0.0);
+      const double lambda = eigen.values[d];
+      const double least = 1e-14 * std::max(eigen.values[m - 1], 0.0);
       const double error = lambda > least ? 1.0 / std::sqrt(lambda) : infinity;
       Eigen::VectorXd full = Eigen::VectorXd::Zero(count);
-      for (Eigen::Index a = 0; a < m; ++a) full[sensitive[std::size_t(a)]] = eigen.eigenvectors()(a, d);
+      for (Eigen::Index a = 0; a < m; ++a) full[sensitive[std::size_t(a)]] = eigen.vectors(a, d);
       result.directions.push_back({{full.data(), full.data() + count}, error});
       if (error > free_error) {
         for (Eigen::Index k = 0; k < count; ++k) {
@@ -179,12 +180,12 @@ void assess_identifiability(const BenchFit& fit, BenchFitter& fitter, const std:
     for (Eigen::Index k = 0; k < count; ++k) share.share.push_back(all(k, k) > 0.0 ? own(k, k) / all(k, k) : 0.0);
     share.error_without.assign(std::size_t(count), infinity);
     if (m > 0) {
-      const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> rest(restricted(all - own));
+      const solver::SymmetricModes rest = solver::symmetric_modes(restricted(all - own));
       for (Eigen::Index a = 0; a < m; ++a) {
         double variance = 0.0;
         for (Eigen::Index d = 0; d < m; ++d) {
-          const double component = rest.eigenvectors()(a, d), lambda = rest.eigenvalues()[d];
-          const double least = 1e-12 * std::max(rest.eigenvalues()[m - 1], 0.0);
+          const double component = rest.vectors(a, d), lambda = rest.values[d];
+          const double least = 1e-12 * std::max(rest.values[m - 1], 0.0);
           if (lambda <= least ? std::abs(component) > 1e-4 : component * component / lambda > free_error * free_error) {
             variance = infinity;
           } else if (lambda > least) {

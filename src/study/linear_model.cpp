@@ -1,10 +1,12 @@
 #include "wingbeat/study/linear_model.hpp"
 
-#include <Eigen/Dense>
+#include <Eigen/LU>
+#include <Eigen/QR>
 #include <algorithm>
 #include <cmath>
 
 #include "wingbeat/cycle/air_equilibrium.hpp"
+#include "wingbeat/solve/eigenvalues.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
@@ -40,9 +42,9 @@ ContinuousModel continuous_of(const CycleMap& map) {
     size[n] = std::max(std::abs(map.states[std::size_t(n)].value), 1e-12);
   }
   const Eigen::MatrixXd scaled = size.cwiseInverse().asDiagonal() * map.a * size.asDiagonal();
-  const Eigen::EigenSolver<Eigen::MatrixXd> eigen(scaled);
-  const Eigen::MatrixXcd modes = eigen.eigenvectors();
-  const Eigen::VectorXcd& multipliers = eigen.eigenvalues();
+  const solver::EigenModes eigen = solver::eigen_modes(scaled);
+  const Eigen::MatrixXcd& modes = eigen.vectors;
+  const Eigen::VectorXcd& multipliers = eigen.values;
   const Eigen::MatrixXcd drive =
       modes.fullPivLu().solve((size.cwiseInverse().asDiagonal() * map.b).cast<Complex>().eval());
   const Eigen::MatrixXcd seen = (map.c * size.asDiagonal()).cast<Complex>() * modes;
@@ -90,7 +92,7 @@ ContinuousModel continuous_of(const CycleMap& map) {
 LinearModel linear_model_of(const CycleMap& map, int cycles) {
   LinearModel model;
   model.map = map;
-  const Eigen::VectorXcd multipliers = map.a.eigenvalues();
+  const Eigen::VectorXcd multipliers = solver::eigenvalues_of(map.a);
   for (const Complex& multiplier : multipliers) {
     if (multiplier.imag() >= 0.0) model.modes.push_back(mode_of(multiplier, map.period));
   }

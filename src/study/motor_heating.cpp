@@ -15,6 +15,7 @@
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/solve/singular_values.hpp"
 
 namespace wingbeat {
 namespace {
@@ -233,12 +234,12 @@ void HeatFit::take_covariance() {
   for (std::size_t row = 0; row < rows_; ++row) jacobian.row(Eigen::Index(row)) = r[row].v.transpose();
   const Eigen::Index free = shows_resistance_ ? unknowns : unknowns - 1;
   const Eigen::MatrixXd used = jacobian.leftCols(free);
-  const Eigen::JacobiSVD<Eigen::MatrixXd> svd(used, Eigen::ComputeThinU | Eigen::ComputeThinV);
-  const Eigen::VectorXd& s = svd.singularValues();
+  const solver::SingularValues svd = solver::singular_values(used);
+  const Eigen::VectorXd& s = svd.sizes;
   // A direction that the data do not see at all is one of a very large error.
   const Eigen::VectorXd inverse = s.unaryExpr([](double size) { return 1.0 / std::max(size * size, 1e-12); });
   covariance_.setZero();
-  covariance_.topLeftCorner(free, free) = svd.matrixV() * inverse.asDiagonal() * svd.matrixV().transpose();
+  covariance_.topLeftCorner(free, free) = svd.V * inverse.asDiagonal() * svd.V.transpose();
   freedom_ = double(rows_) - double(free);
   // Of residuals that follow each other as a first-order process does, fewer are independent.
   double correlation = 0.0;

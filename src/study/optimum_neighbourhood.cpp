@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "wingbeat/core/text.hpp"
+#include "wingbeat/solve/singular_values.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat::detail {
@@ -79,10 +80,10 @@ std::vector<FlatDirection> Neighbourhood::directions() {
   }
   if (free.cols() == 0) return {};
   const Eigen::MatrixXd h = free.transpose() * hessian() * free / std::abs(at_.objective);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen(0.5 * (h + h.transpose()));
+  const solver::SymmetricModes eigen = solver::symmetric_modes(0.5 * (h + h.transpose()));
   std::vector<Walk> walks(2 * std::size_t(free.cols()));
   for_all(for_each_, walks.size(), [&](std::size_t w) {
-    const Vector direction = free * eigen.eigenvectors().col(Eigen::Index(w / 2));
+    const Vector direction = free * eigen.vectors.col(Eigen::Index(w / 2));
     walks[w] = w % 2 == 0 ? farthest(direction, 1.0) : farthest(-direction, -1.0);
   });
   std::vector<FlatDirection> result;
@@ -91,7 +92,7 @@ std::vector<FlatDirection> Neighbourhood::directions() {
     const Walk& down = walks[2 * std::size_t(k) + 1];
     evaluations_ += up.evaluations + down.evaluations;
     FlatDirection flat;
-    flat.curvature = eigen.eigenvalues()[k];
+    flat.curvature = eigen.values[k];
     std::vector<FlatDirection::Step> beyond = up.steps;
     beyond.insert(beyond.end(), down.steps.begin(), down.steps.end());
     beyond.push_back({0.0, values(best_), problem_.study().maximise ? -at_.objective : at_.objective});
