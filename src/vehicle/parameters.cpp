@@ -53,6 +53,23 @@ struct Nearest {
   }
 };
 
+/// True if every word of `asked`, two at least, is one of `name` and both end alike: wing.mass and body.wing_mass.
+bool has_words_of(std::string_view name, std::string_view asked) {
+  const auto words_of = [](std::string_view text) {
+    std::vector<std::string_view> words;
+    for (std::size_t begin = 0; begin <= text.size();) {
+      const std::size_t end = std::min(text.find_first_of("._", begin), text.size());
+      words.push_back(text.substr(begin, end - begin));
+      begin = end + 1;
+    }
+    return words;
+  };
+  const std::vector<std::string_view> known = words_of(name), wanted = words_of(asked);
+  return wanted.size() > 1 && wanted.back() == known.back() &&
+         std::all_of(wanted.begin(), wanted.end(),
+                     [&](std::string_view word) { return std::find(known.begin(), known.end(), word) != known.end(); });
+}
+
 }  // namespace
 
 std::string default_text(const ParameterText& parameter) {
@@ -129,6 +146,7 @@ std::string nearest_key(std::string_view path) {
     nearest.offer(key.path, edit_distance(path, key.path));
     // The right name in the wrong section.
     if (leaf_of(key.path) == leaf_of(path)) nearest.offer(key.path, 2);
+    if (has_words_of(key.path, path)) nearest.offer(key.path, 1);
   }
   for (const std::string_view section : sections()) nearest.offer(section, edit_distance(path, section));
   const bool near = nearest.distance <= std::max<std::size_t>(2, leaf_of(path).size() / 3);

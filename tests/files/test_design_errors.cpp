@@ -43,6 +43,8 @@ TEST(DesignErrors, UnknownKeyOrSection) {
   EXPECT_EQ(refusal(with("[friction]", "[fricton]")), "v.toml:18:2: fricton: unknown key; did you mean [friction]?");
   EXPECT_EQ(refusal(with("s3 =", "s4 =")),
             "v.toml:23:53: wing.planform.s4: unknown key; did you mean wing.planform.s2?");
+  EXPECT_THAT(refusal(with("[wing]", "[wing]\nmass = 1")),
+              HasSubstr("wing.mass: unknown key; did you mean body.wing_mass?"));
   EXPECT_EQ(refusal("voltage = 3\n" + vehicle_text), "v.toml:1:1: voltage: unknown key; did you mean supply.voltage?");
   EXPECT_THAT(refusal(with("voltage =", "'supply.voltage' =")),
               HasSubstr("v.toml:5:1: supply.\"supply.voltage\": unknown key"));
