@@ -10,6 +10,7 @@
 #include "operating_point.hpp"
 #include "options.hpp"
 #include "plot_option.hpp"
+#include "wingbeat/files/control_file.hpp"
 #include "wingbeat/files/output_file.hpp"
 #include "wingbeat/files/two_sides_file.hpp"
 #include "wingbeat/report/flight_report.hpp"
@@ -18,7 +19,7 @@ namespace wingbeat::app {
 namespace {
 
 struct FlightArguments {
-  std::string vehicle, plot, plot_width, speed, speed_to, climb, turn_rate;
+  std::string vehicle, plot, output, plot_width, speed, speed_to, climb, turn_rate;
   std::vector<std::string> overrides;
   int points = 9;
   bool json = false, force = false, sensitivity = false;
@@ -84,12 +85,15 @@ int run_trim(const FlightArguments& a) {
   return flies ? done : does_not_flap;
 }
 
+constexpr const char* linear_model_extensions = ".mat";
+
 int run_stability(const FlightArguments& a) {
   const auto format = asked_format("--plot", a.plot, a.plot_width);
   const FlightCondition condition = condition_of(a);
   Design<double> design;
   const FlightVehicle vehicle = read_flight_vehicle(a, design);
-  std::optional<OutputFile> plot;
+  std::optional<OutputFile> plot, output;
+  if (!a.output.empty()) output.emplace("-o", a.output, OutputRules{linear_model_extensions, a.force});
   if (format) plot.emplace("--plot", a.plot, OutputRules{plot_extensions, a.force});
   AveragedFlight flight(vehicle);
   const TrimResult steady = trim(flight, condition);
@@ -102,8 +106,12 @@ int run_stability(const FlightArguments& a) {
     plot_stability(report, *format, plot->temporary());
     plot->commit();
   }
+  if (output && report.result.model) {
+    write_flight_mat(report.result, version, output->temporary());
+    output->commit();
+  }
   print(a.json ? json_stability(report) : text_stability(report));
-  if (plot && !report.result.model) complain("the vehicle is not in trim: no file was written");
+  if ((plot || output) && !report.result.model) complain("the vehicle is not in trim: no file was written");
   return flies ? done : does_not_flap;
 }
 
@@ -153,6 +161,7 @@ void add_stability(CLI::App& program, Action& action) {
   add_set(command, a->overrides);
   add_condition(command, *a);
   command->add_flag("--sensitivity", a->sensitivity, "By how much each parameter changes the least stable mode");
+  add_file(command, "-o,--output", a->output, linear_model_extensions, "Write the averaged linear model to FILE.mat");
   add_file(command, "--plot", a->plot, plot_extensions, "Plot the modes in the complex plane");
   add_plot_width(command, a->plot_width);
   add_force(*command, a->force);
@@ -160,7 +169,8 @@ void add_stability(CLI::App& program, Action& action) {
   command->footer(
       "Example:\n  wingbeat stability flight-x-wing --plot modes.svg\n\n"
       "Linear model, derivatives and modes of the flight averaged over the wingbeat, beside the Floquet exponents of\n"
-      "the whole flight that repeats with the wingbeat: where they differ, averaging does not hold.\n\n"
+      "the whole flight that repeats with the wingbeat: where they differ, averaging does not hold. The inputs of the\n"
+      "linear model are the controls and the wind.\n\n"
       "Exit status: 0 done, 2 bad input or usage, 3 not in trim, 1 anything else.");
   act(command, action, a, run_stability);
 }

@@ -2,12 +2,15 @@
 #include <fmt/format.h>
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "command.hpp"
+#include "operating_point.hpp"
 #include "options.hpp"
 #include "plot_option.hpp"
 #include "progress.hpp"
@@ -15,6 +18,7 @@
 #include "wingbeat/files/tolerance_data.hpp"
 #include "wingbeat/files/tolerance_file.hpp"
 #include "wingbeat/report/tolerance_report.hpp"
+#include "wingbeat/run/parallel.hpp"
 #include "wingbeat/run/sweep_run.hpp"
 #include "wingbeat/study/run.hpp"
 
@@ -23,13 +27,41 @@ namespace {
 
 struct ToleranceArguments {
   std::vector<std::string> overrides;
-  std::string study, output, plot, plot_metric, plot_width;
+  std::string study, output, plot, plot_metric, plot_width, speed;
   int threads = 0;
   bool json = false, force = false;
-  bool allow_extrapolation = false;
+  bool allow_extrapolation = false, flight = false;
 };
 
+/// Each vehicle trimmed, with its modes.
+int run_flights(const ToleranceArguments& arguments) {
+  for (const auto& [option, file] : {std::pair("-o", &arguments.output), std::pair("--plot", &arguments.plot)}) {
+    if (!file->empty())
+      throw InputError(option, 0, 0, "", "flights are neither written nor drawn; --json has their spread");
+  }
+  const ToleranceStudy study = read_tolerance_study(arguments.study, arguments.overrides);
+  FlightCondition condition;
+  if (!arguments.speed.empty()) condition.speed = quantity_of("--speed", arguments.speed, "m/s");
+  ProgressLine line("tolerance: ");
+  const auto progress = [&](double share) {
+    line.show(fmt::format("{:.0f} % of {} vehicles", 100.0 * share, study.count));
+  };
+  try {
+    const ForEach for_each = [&](std::size_t count, const std::function<void(std::size_t)>& act) {
+      for_each_in_parallel(count, act, arguments.threads);
+    };
+    const FlightToleranceResult result = flight_tolerance(study, condition, for_each, progress);
+    line.clear();
+    print(arguments.json ? json_flight_tolerance(study, condition, result)
+                         : text_flight_tolerance(study, condition, result));
+    return result.flies.count > 0 ? done : does_not_flap;
+  } catch (const ParameterError& e) {
+    throw InputError(arguments.study, 0, 0, e.key(), e.reason());
+  }
+}
+
 int run(const ToleranceArguments& arguments) {
+  if (arguments.flight) return run_flights(arguments);
   const auto format = asked_format("--plot", arguments.plot, arguments.plot_width);
   if (!arguments.output.empty() && std::filesystem::path(arguments.output).extension() != ".nc") {
     throw InputError("-o " + arguments.output, 0, 0, "", "the name must end in .nc");
@@ -83,6 +115,12 @@ void add_tolerance(CLI::App& program, Action& action) {
   add_file(command, "-o,--output", a->output, ".nc", "Write samples, metrics and indices (NetCDF-4)", "FILE.nc");
   command->add_flag("--allow-extrapolation", a->allow_extrapolation,
                     "Samples outside the model's domain count and may hover (docs/domain.md)");
+  CLI::Option* flight =
+      command->add_flag("--flight", a->flight,
+                        "Trim each vehicle, which has a body: spread of voltage, power and modes (docs/flight.md)");
+  command->add_option("--speed", a->speed, "With --flight: forward, against the air; hover unless given")
+      ->needs(flight)
+      ->type_name("SPEED");
   add_json(command, a->json);
   add_threads(command, a->threads);
   CLI::Option* plot = add_file(command, "--plot", a->plot, plot_extensions,

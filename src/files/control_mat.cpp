@@ -184,4 +184,32 @@ void write_control_mat(const ControlModels& models, const std::string& version, 
   mat.close();
 }
 
+void write_flight_mat(const StabilityResult& flight, const std::string& version, const std::filesystem::path& file) {
+  const FlightLinearModel& model = *flight.model;
+  const Eigen::Index states = model.A.rows();
+  Eigen::MatrixXd inputs(states, model.B.cols() + model.W.cols());
+  inputs << model.B, model.W;
+  MatFile mat(file, fmt::format("MATLAB 5.0 MAT-file, Written by wingbeat {} stability", version));
+  mat.write(matrix("A", model.A));
+  mat.write(matrix("B", inputs));
+  mat.write(matrix("C", Eigen::MatrixXd::Identity(states, states)));
+  mat.write(matrix("D", Eigen::MatrixXd::Zero(states, inputs.cols())));
+  // Units of states and winds are a part of their names.
+  const TrimResult& trim = flight.trim;
+  const FlightVector trimmed = steady_states(trim);
+  std::vector<std::string> state_names(flight_state_names.begin(), flight_state_names.end()), input_names;
+  std::vector<double> values(trimmed.begin(), trimmed.end()), input_values;
+  for (const FlightControl control : model.controls) {
+    input_names.push_back(std::string(name_of(control)) + flight_control_suffix(control));
+    input_values.push_back(trim.controls[control]);
+  }
+  input_names.insert(input_names.end(), wind_input_names.begin(), wind_input_names.end());
+  input_values.resize(input_names.size(), 0.0);
+  mat.write(cell_of_texts("state_names", state_names));
+  mat.write(row("state_values", values));
+  mat.write(cell_of_texts("input_names", input_names));
+  mat.write(row("input_values", input_values));
+  mat.close();
+}
+
 }  // namespace wingbeat

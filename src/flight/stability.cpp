@@ -107,6 +107,13 @@ void add_modes(bool longitudinal, const FlightVector& steps, StabilityResult& re
   }
 }
 
+/// Modes of both kinds, the least stable first.
+void add_all_modes(const FlightVector& steps, StabilityResult& result) {
+  for (const bool longitudinal : {true, false}) add_modes(longitudinal, steps, result);
+  std::stable_sort(result.modes.begin(), result.modes.end(),
+                   [](const FlightMode& a, const FlightMode& b) { return growth_of(a) > growth_of(b); });
+}
+
 Complex least_stable(const FlightMatrix& A) {
   const Eigen::VectorXcd values = solver::eigenvalues_of(A);
   Complex found = values[0];
@@ -120,11 +127,14 @@ Complex least_stable(const FlightMatrix& A) {
 
 }  // namespace
 
+FlightVector steady_states(const TrimResult& steady) {
+  return states_of(steady_body(steady.condition, steady.roll, steady.pitch));
+}
+
 std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const TrimResult& steady) {
   if (!steady.flies()) return std::nullopt;
   const Body& body = flight.vehicle().body;
-  const FlightVector trimmed = states_of(steady_body(steady.condition, steady.roll, steady.pitch)),
-                     steps = steps_of(flight, steady);
+  const FlightVector trimmed = steady_states(steady), steps = steps_of(flight, steady);
   FlightLinearModel model;
   const auto rates_at = [&](const FlightVector& x, const FlightControls& controls) -> std::optional<FlightVector> {
     const std::optional<MeanFlight> mean = flight.at(controls, motion_of(body_of(x)));
@@ -157,7 +167,20 @@ std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const Tri
     if (!high || !low) return std::nullopt;
     model.B.col(Eigen::Index(k)) = (*high - *low) / (2.0 * step);
   }
+  // What acts depends on the velocity through the air: on the body's less the wind's. A also has v' = ... - omega x v.
+  model.W = -model.A.leftCols<3>();
+  const FlightVector& x = trimmed;
+  Eigen::Matrix3d turning;
+  turning << 0.0, -x[5], x[4], x[5], 0.0, -x[3], -x[4], x[3], 0.0;
+  model.W.topRows<3>() -= turning;
   return model;
+}
+
+std::vector<FlightMode> averaged_modes(AveragedFlight& flight, const TrimResult& steady) {
+  StabilityResult result;
+  result.model = linear_flight(flight, steady);
+  if (result.model) add_all_modes(steps_of(flight, steady), result);
+  return result.modes;
 }
 
 StabilityResult flight_stability(AveragedFlight& flight, const TrimResult& steady) {
@@ -171,9 +194,7 @@ StabilityResult flight_stability(AveragedFlight& flight, const TrimResult& stead
   const FlightVector steps = steps_of(flight, steady);
   result.periodic = detail::periodic_flight(flight.vehicle(), steady, *result.model, steps, flight.options().tolerance,
                                             result.periodic_detail);
-  for (const bool longitudinal : {true, false}) add_modes(longitudinal, steps, result);
-  std::stable_sort(result.modes.begin(), result.modes.end(),
-                   [](const FlightMode& a, const FlightMode& b) { return growth_of(a) > growth_of(b); });
+  add_all_modes(steps, result);
   return result;
 }
 

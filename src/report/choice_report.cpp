@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "report/report_tools.hpp"
+#include "report/uncertain_report.hpp"
 #include "wingbeat/report/report.hpp"
 
 namespace wingbeat {

@@ -26,8 +26,6 @@ struct ChoiceFound {
 };
 const Description<ChoiceFound>& choice_description();
 
-const Description<Probability>& probability_description();
-
 }  // namespace described
 
 }  // namespace wingbeat

@@ -185,8 +185,7 @@ const Description<TrimResult>& trim_description() {
         .always("power_electrical_w", "W", "mean, at the terminals of all drives", &R::power);
     for (std::size_t k = 0; k < flight_control_count; ++k) {
       const std::string_view unit = flight_control_units[k];
-      const char* suffix = unit == "V" ? "_v" : unit == "rad" ? "_rad" : "";
-      d.always(std::string("control_") + name_of(FlightControl(k)) + suffix, unit, "",
+      d.always(std::string("control_") + name_of(FlightControl(k)) + flight_control_suffix(FlightControl(k)), unit, "",
                [k](const R& r) { return r.flies() ? r.controls.at[k] : absent; });
     }
     return d;
@@ -291,6 +290,9 @@ const Description<StabilityReport>& stability_description() {
           .always(
               "B", "", "states by controls",
               [](const R& r) { return r.result.model ? matrix_rows(r.result.model->B) : Json::array(); }, matrix)
+          .always(
+              "W", "", "states by the velocity of the air along the axes of the body in trim: wind_u, wind_v, wind_w",
+              [](const R& r) { return r.result.model ? matrix_rows(r.result.model->W) : Json::array(); }, matrix)
           .parts("modes", "the least stable first; of a pair the one of positive imaginary part",
                  flight_mode_description(), [](const R& r) { return r.result.modes; })
           .always("periodic", "", "a flight that repeats with the wingbeat was found",

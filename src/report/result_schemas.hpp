@@ -10,6 +10,7 @@ nlohmann::ordered_json two_sides_schema();       ///< of run, where the sides di
 nlohmann::ordered_json two_sides_maps_schema();  ///< of linearise, likewise
 nlohmann::ordered_json endurance_schema();
 nlohmann::ordered_json tolerance_schema();
+nlohmann::ordered_json flight_tolerance_schema();  ///< of tolerance --flight
 nlohmann::ordered_json optimum_schema();
 nlohmann::ordered_json motors_schema();        ///< an optimum for each motor of a catalogue, or for each choice
 nlohmann::ordered_json drive_trains_schema();  ///< combinations of motors, gearboxes and batteries

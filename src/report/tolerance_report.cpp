@@ -9,6 +9,7 @@
 #include "report/described.hpp"
 #include "report/result_schemas.hpp"
 #include "report/result_trees.hpp"
+#include "report/uncertain_report.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
 #include "wingbeat/report/describe.hpp"
@@ -18,30 +19,8 @@
 namespace wingbeat {
 namespace {
 
-std::string percent(double x) {
-  // Never rounded to certainty.
-  if (x > 0.0 && x < 5e-5) return "< 0.01 %";
-  if (x < 1.0 && x > 0.99995) return "> 99.99 %";
-  return fmt::format("{:.2f} %", 100.0 * x);
-}
-
 std::string share_text(double x, double low, double high) {
   return fmt::format("{:5.3f} ({:5.3f} .. {:5.3f})", x, low, high);
-}
-
-std::string spread_text(const Distribution& d, bool correlated, const std::string& unit) {
-  const std::string u = unit == "1" ? "" : " " + unit;
-  std::string text;
-  switch (d.kind) {
-    case DistributionKind::uniform: return fmt::format("uniform, {:.4g} to {:.4g}{}", d.lower, d.upper, u);
-    case DistributionKind::normal: text = fmt::format("normal, {:.4g} +- {:.2g}{}", d.centre, d.spread, u); break;
-    case DistributionKind::lognormal:
-      text = fmt::format("lognormal, median {:.4g}{}, factor {:.3g}", d.centre, u, std::exp(d.spread));
-      break;
-  }
-  if (std::isfinite(d.lower)) text += fmt::format(", not below {:.4g}", d.lower);
-  if (std::isfinite(d.upper)) text += fmt::format(", not above {:.4g}", d.upper);
-  return text + (correlated ? ", correlated" : "");
 }
 
 /// "12 angle_of_attack, 3 stroke"
@@ -75,16 +54,7 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   fmt::format_to(out, "{} {} samples", base_count(study), method);
   if (study.indices) fmt::format_to(out, ", {} vehicles with those for the indices", result.vehicles);
   if (study.hold) text += "; " + describe(*study.hold);
-  fmt::format_to(out, "\n\nUncertain parameters{}\n", study.choices.empty() ? "" : " and choices of model");
-  for (std::size_t k = 0; k < study.parameters.size(); ++k) {
-    const UncertainParameter& p = study.parameters[k];
-    fmt::format_to(out, "  {:<34}{}\n", p.parameter.key,
-                   spread_text(p.distribution, is_correlated(study, k), p.parameter.unit));
-  }
-  for (const Correlation& c : study.correlations) {
-    fmt::format_to(out, "  correlation {:.3g} of {} with {}\n", c.value, study.parameters[c.first].parameter.key,
-                   study.parameters[c.second].parameter.key);
-  }
+  text += "\n\n" + text_uncertain(study);
   for (const ModelChoice& choice : study.choices) {
     constexpr int column = 36;
     std::string alternatives = wrapped("choice, " + alternatives_text(choice), 100 - column, 8);
@@ -94,10 +64,9 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
     fmt::format_to(out, "  {:<34}{}\n", choice.name, alternatives);
   }
 
-  fmt::format_to(out, "\nProbability                             95 % interval\n");
-  const auto line = [&](const std::string& name, const Probability& p, const std::string& note) {
-    fmt::format_to(out, "  {:<24}{:>10}    {} .. {}{}\n", name, percent(p.share), percent(p.lower), percent(p.upper),
-                   note.empty() ? "" : "   " + note);
+  text += probability_head;
+  const auto line = [&](const char* name, const Probability& p, const std::string& note) {
+    text += probability_line(name, p, note);
   };
   for (int s = 0; s < sweep_status_count; ++s) {
     const Probability& p = result.status[std::size_t(s)];
@@ -106,7 +75,8 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   line("outside the domain", result.outside, result.outside.count == 0 ? "" : limits_beyond(result));
   if (result.hover) {
     line("hovers", *result.hover,
-         std::isfinite(result.linear_hover) ? fmt::format("linear prediction {}", percent(result.linear_hover)) : "");
+         std::isfinite(result.linear_hover) ? fmt::format("linear prediction {}", probability_text(result.linear_hover))
+                                            : "");
   }
   if (result.outside.count > 0) {
     const char* what = study.allow_extrapolation ? "Samples outside the model's domain count: extrapolation is allowed."
@@ -196,28 +166,12 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
 
 namespace described {
 
-const Description<Probability>& probability_description() {
-  using R = Probability;
-  static const Description<R> description =
-      Description<R>()
-          .always("count", "", "samples", &R::count)
-          .always("share", "1", "of all samples", &R::share, schema::any_number)
-          .always("lower_95", "1", "lower end of its 95 % interval", &R::lower, schema::any_number)
-          .always("upper_95", "1", "upper end", &R::upper, schema::any_number);
-  return description;
-}
-
 namespace {
 
 /// What a tolerance study's --json is made from.
 struct ToleranceFound {
   const ToleranceStudy& study;
   const ToleranceResult& result;
-};
-struct UncertainKey {
-  const ToleranceStudy& study;
-  std::size_t place;
-  const UncertainParameter& parameter() const { return study.parameters[place]; }
 };
 struct OutputFound {
   const ToleranceOutput& output;
@@ -314,23 +268,6 @@ Description<ToleranceResult> limits_description() {
 const Description<ToleranceFound>& tolerance_description() {
   using R = ToleranceFound;
   const auto result = [](const R& r) -> const ToleranceResult& { return r.result; };
-  const auto parameters = [](const R& r) {
-    std::vector<UncertainKey> all;
-    for (std::size_t k = 0; k < r.study.parameters.size(); ++k) all.push_back({r.study, k});
-    return all;
-  };
-  using P = UncertainKey;
-  static const Description<P> parameter =
-      Description<P>()
-          .always("key", "", "of the vehicle file", [](const P& p) { return p.parameter().parameter.key; })
-          .always("unit", "", "", [](const P& p) { return p.parameter().parameter.unit; })
-          .always(
-              "mean", "", "", [](const P& p) { return p.parameter().distribution.mean(); }, schema::any_number)
-          .always(
-              "deviation", "", "standard deviation",
-              [](const P& p) { return std::sqrt(p.parameter().distribution.variance()); }, schema::any_number)
-          .always("correlated", "", "varies together with others",
-                  [](const P& p) { return is_correlated(p.study, p.place); });
   static const Description<R> description =
       Description<R>()
           .always("title", "", "", [](const R& r) { return r.study.title; })
@@ -338,7 +275,8 @@ const Description<ToleranceFound>& tolerance_description() {
           .always("samples", "", "vehicles of the plain sample", [](const R& r) { return base_count(r.study); })
           .always("vehicles", "", "solved, those for Sobol indices included",
                   [](const R& r) { return r.result.vehicles; })
-          .parts("parameters", "the uncertain ones", parameter, parameters)
+          .parts("parameters", "the uncertain ones", uncertain_description(),
+                 [](const R& r) { return uncertain_keys(r.study); })
           .sometimes(
               "choices", "", "of model, where the study has some",
               [](const R& r) {

@@ -33,6 +33,11 @@ Json linearise_schema() {
                          schema::with_text(described::two_sides_maps_schema(), "sides that differ")});
 }
 
+Json tolerance_schema() {
+  return schema::either({schema::with_text(described::tolerance_schema(), "metrics of a cycle"),
+                         schema::with_text(described::flight_tolerance_schema(), "with --flight")});
+}
+
 constexpr std::array<std::pair<std::string_view, Json (*)()>, 21> schemas = {
     {{"run", run_schema},
      {"compare", described::comparison_schema},
@@ -40,7 +45,7 @@ constexpr std::array<std::pair<std::string_view, Json (*)()>, 21> schemas = {
      {"identify-motor", described::identification_schema},
      {"read-bench", described::readings_schema},
      {"fit", described::fit_schema},
-     {"tolerance", described::tolerance_schema},
+     {"tolerance", tolerance_schema},
      {"optimise", optimise_schema},
      {"endurance", described::endurance_schema},
      {"linearise", linearise_schema},

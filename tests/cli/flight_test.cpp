@@ -1,6 +1,9 @@
 // Trim and stability as a user runs them.
 #include <gmock/gmock.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "program.hpp"
 
 namespace {
@@ -35,7 +38,34 @@ TEST_F(FlightCommands, StabilityHasBothWays) {
   const Json& first = result["modes"][0];
   EXPECT_GT(first["averaged_real_per_s"].get<double>(), 0.0);
   EXPECT_LT(first["apart"].get<double>(), 0.05);
+  EXPECT_EQ(result["W"].size(), 8u);
+  EXPECT_EQ(result["W"][0].size(), 3u);
   EXPECT_THAT(read(path("modes.svg")), HasSubstr("Longitudinal"));
+}
+
+TEST_F(FlightCommands, ToleranceOfHover) {
+  std::string study = read(data + "/studies/tolerance-flight.toml");
+  study.replace(study.find("count = 64"), 10, "count = 4");
+  study.replace(study.find("../designs"), 10, data + "/designs");
+  std::ofstream(path("few.toml")) << study;
+  const Outcome out = run({"tolerance", path("few.toml"), "--flight", "--json"});
+  ASSERT_EQ(out.status, 0) << out.err;
+  const Json result = out.json();
+  EXPECT_EQ(result["samples"], 4);
+  EXPECT_EQ(result["flies"]["share"], 1.0);
+  const Json trim = run({"trim", "flight-friction2022", "--json"}).json()["flights"][0];
+  EXPECT_NEAR(result["flight"]["voltage_v"]["centre"].get<double>(), trim["control_voltage_v"].get<double>(), 1e-6);
+  EXPECT_GT(result["flight"]["longitudinal_growth_per_s"]["deviation"].get<double>(), 0.0);
+  EXPECT_THAT(run({"tolerance", path("few.toml"), "--flight"}).out, HasSubstr("a mode grows"));
+
+  std::ofstream(path("held.toml")) << study.insert(study.find("vehicle ="), "hold = { frequency = \"36 Hz\" }\n");
+  const Outcome held = run({"tolerance", path("held.toml"), "--flight"});
+  EXPECT_EQ(held.status, 2);
+  EXPECT_THAT(held.err, HasSubstr("study.hold: trim finds the voltage of each vehicle: leave it out"));
+  const Outcome bodiless = run({"tolerance", "sobol-22hz", "--flight"});
+  EXPECT_EQ(bodiless.status, 2);
+  EXPECT_EQ(run({"tolerance", path("few.toml"), "--flight", "-o", path("a.nc")}).status, 2);
+  EXPECT_EQ(run({"tolerance", path("few.toml"), "--speed", "1 m/s"}).status, 2);
 }
 
 TEST_F(FlightCommands, RefuseInASentence) {
@@ -51,6 +81,7 @@ TEST_F(FlightCommands, RefuseInASentence) {
   refused({"trim", "flight-x-wing", "--speed", "fast"}, "--speed");
   refused({"trim", "flight-x-wing", "--set", "wing.count=3"}, "a body carries two or four wings");
   refused({"trim", "flight-x-wing", "--set", "body.inertia_pitch=\"1 kg m2\""}, "no body has these three moments");
+  refused({"stability", "flight-x-wing", "-o", path("model.json")}, "-o");
   refused({"stability", "flight-x-wing", "--set", "aerodynamics.induced_velocity=1"},
           "aerodynamics.induced_velocity: flight is not known");
 }
@@ -59,6 +90,11 @@ TEST_F(FlightCommands, SayWhatDoesNotFly) {
   const Outcome heavy = run({"trim", "flight-friction2022", "--set", "vehicle.mass=\"30 g\""});
   EXPECT_EQ(heavy.status, 3);
   EXPECT_THAT(heavy.out, HasSubstr("untrimmable"));
+  const Outcome modes =
+      run({"stability", "flight-friction2022", "--set", "vehicle.mass=\"30 g\"", "-o", path("none.mat")});
+  EXPECT_EQ(modes.status, 3);
+  EXPECT_THAT(modes.err, HasSubstr("no file was written"));
+  EXPECT_FALSE(std::filesystem::exists(path("none.mat")));
 }
 
 }  // namespace

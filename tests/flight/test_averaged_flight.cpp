@@ -165,6 +165,34 @@ TEST(Stability, TheLinearModelIsThatOfTheAveragedFlight) {
   EXPECT_NEAR(model->A(0, 7), -standard_gravity * std::cos(hover.pitch), 1e-5);
 }
 
+TEST(Stability, WindActsAsTheMotionThroughTheAirDoes) {
+  AveragedFlight flight(flying("friction2022"));
+  const TrimResult turn = trim(flight, {.speed = 0.3, .turn_rate = 0.5});
+  ASSERT_TRUE(turn.flies()) << turn.detail;
+  const std::optional<FlightLinearModel> model = linear_flight(flight, turn);
+  ASSERT_TRUE(model);
+  // The air moves, the body as before.
+  const BodyState body = steady_body(turn.condition, turn.roll, turn.pitch);
+  const auto blown = [&](std::size_t axis, double wind) {
+    BodyState through_air = body;
+    through_air.velocity[axis] -= wind;
+    return mean_acceleration(flight.vehicle().body, body, flight.at(turn.controls, motion_of(through_air))->loads);
+  };
+  constexpr double gust = 5e-3;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const MeanAcceleration high = blown(axis, gust), low = blown(axis, -gust);
+    const auto column = model->W.col(Eigen::Index(axis));
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_NEAR((high.linear[k] - low.linear[k]) / (2.0 * gust), column[Eigen::Index(k)],
+                  1e-3 * column.head<3>().cwiseAbs().maxCoeff());
+      EXPECT_NEAR((high.angular[k] - low.angular[k]) / (2.0 * gust), column[Eigen::Index(k + 3)],
+                  1e-3 * column.segment<3>(3).cwiseAbs().maxCoeff());
+    }
+    EXPECT_EQ(column[6], 0.0);
+    EXPECT_EQ(column[7], 0.0);
+  }
+}
+
 TEST(Stability, AveragingAndFloquetTheoryAgreeWhereTheBodyIsSlow) {
   AveragedFlight flight(flying("x-wing"));
   const TrimResult hover = trim(flight, {});

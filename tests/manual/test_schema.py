@@ -336,6 +336,8 @@ class Schema(unittest.TestCase):
         for method in ("sobol", "monte-carlo"):
             self.check("tolerance", self.file("study.toml", TOLERANCE.format(method=method)))
         self.check("tolerance", self.file("study.toml", TOLERANCE.format(method="sobol") + MODEL_CHOICE))
+        flights = (DATA / "studies/tolerance-flight.toml").read_text().replace("../designs", str(DATA / "designs"))
+        self.check("tolerance", self.file("flights.toml", flights.replace("count = 64", "count = 4")), "--flight")
         self.everything_is_written("tolerance")
 
     def test_optimise(self):

@@ -187,7 +187,11 @@ class SteadyFlight(unittest.TestCase):
         self.assertEqual(found.B.shape, (8, 4))
         self.assertEqual(len(found.floquet), len(found.modes))
         system = found.model
-        self.assertEqual((system.inputs, system.outputs), (found.controls, found.states))
+        self.assertEqual(system.inputs[:4], found.controls)
+        self.assertEqual(system.inputs[4:], ["wind_u_m_per_s", "wind_v_m_per_s", "wind_w_m_per_s"])
+        self.assertEqual(system.outputs, found.states)
+        np.testing.assert_array_equal(system.B, np.hstack([found.B, found.W]))
+        np.testing.assert_allclose(found.W, -found.A[:, :3], atol=1e-12)  # in hover wind is motion the other way
         np.testing.assert_array_equal(system.C, np.eye(8))
 
     def test_the_linear_model_is_that_of_the_simulation(self):
@@ -215,8 +219,27 @@ class SteadyFlight(unittest.TestCase):
             with self.assertRaisesRegex(ImportError, "^the package `control` .python-control. is not installed$"):
                 found.to_control()
         else:
-            self.assertEqual(found.to_control().input_labels, found.controls)
+            self.assertEqual(found.to_control().input_labels, found.model.inputs)
             self.assertTrue(control)
+
+    @unittest.skipUnless(PROGRAM, "the program is not built")
+    def test_the_linear_model_as_a_mat_file(self):
+        import scipy.io
+
+        vehicle = flyer("flight-purdue")
+        found = vehicle.flight_stability()
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "flight.mat"
+            design = DATA / "designs" / "flight-purdue.toml"
+            subprocess.run([PROGRAM, "stability", design, "-o", file], capture_output=True, check=True)
+            mat = scipy.io.loadmat(file, squeeze_me=True)
+        for name in "ABCD":
+            np.testing.assert_array_equal(mat[name], getattr(found.model, name))
+        self.assertEqual(list(mat["state_names"]), found.states)
+        self.assertEqual(list(mat["input_names"][4:]), found.model.inputs[4:])
+        self.assertEqual(list(mat["input_names"][:2]), ["voltage_v", "voltage_difference_v"])
+        self.assertEqual(mat["input_values"][0], found.trim.controls["voltage"])
+        self.assertAlmostEqual(mat["state_values"][7], found.trim["pitch_rad"], 12)
 
 
 class Mjcf(unittest.TestCase):

@@ -36,6 +36,11 @@ inline constexpr std::pair<const char*, FlightControl> names_of<FlightControl>[]
     {"incidence_difference", FlightControl::incidence_difference}};
 inline constexpr std::array<const char*, flight_control_count> flight_control_units = {"V",   "V",   "V",  "1",
                                                                                        "rad", "rad", "rad"};
+/// What the names of numbers in that unit end with.
+constexpr const char* flight_control_suffix(FlightControl control) {
+  const std::string_view unit = flight_control_units[std::size_t(control)];
+  return unit == "V" ? "_v" : unit == "rad" ? "_rad" : "";
+}
 
 /// Settings of all controls; indexed by FlightControl.
 struct FlightControls {

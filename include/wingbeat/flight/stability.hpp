@@ -21,10 +21,14 @@ inline constexpr std::array<const char*, flight_state_count> flight_state_names 
 using FlightVector = Eigen::Matrix<double, 8, 1>;
 using FlightMatrix = Eigen::Matrix<double, 8, 8>;
 
-/// Of the states about trim: x' = A x + B u.
+/// u, v and w of the air, along the axes of the body in trim [m/s].
+inline constexpr std::array<const char*, 3> wind_input_names = {"wind_u_m_per_s", "wind_v_m_per_s", "wind_w_m_per_s"};
+
+/// Of the states about trim: x' = A x + B u + W w, where w is the velocity of the air.
 struct FlightLinearModel {
   FlightMatrix A = FlightMatrix::Zero();
-  Eigen::MatrixXd B;                    ///< a column for each of `controls`
+  Eigen::MatrixXd B;  ///< a column for each of `controls`
+  Eigen::Matrix<double, 8, 3> W = Eigen::Matrix<double, 8, 3>::Zero();
   std::vector<FlightControl> controls;  ///< those that the vehicle has
 
   /// The column of a control in B; -1 of one that the vehicle does not have.
@@ -67,8 +71,14 @@ struct StabilityResult {
   std::string periodic_detail;  ///< why there is no periodic flight
 };
 
+/// The states of a trim.
+FlightVector steady_states(const TrimResult& steady);
+
 /// The averaged linear model about a trim that has a flight; none where the vehicle does not flap beside it.
 std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const TrimResult& steady);
+
+/// Modes of the averaged flight alone, the least stable first; none where there is no linear model.
+std::vector<FlightMode> averaged_modes(AveragedFlight& flight, const TrimResult& steady);
 
 /// Modes by both ways.
 StabilityResult flight_stability(AveragedFlight& flight, const TrimResult& steady);

@@ -19,6 +19,10 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
 
+#: Inputs of linear models of flights beside the controls: the velocity of the air along the axes of the body in trim.
+WIND_INPUTS = ("wind_u_m_per_s", "wind_v_m_per_s", "wind_w_m_per_s")
+
+
 class Trim(StudyResult):
     """A steady flight: the keys of one of the `flights` of `wingbeat trim --json`.
 
@@ -73,29 +77,39 @@ class FlightStability(StudyResult):
 
     @property
     def model(self) -> LinearModel:
-        """The averaged linear model in continuous time, from controls to all states.
+        """The averaged linear model in continuous time, from controls and wind to all states.
 
         Raises
         ------
         ValueError
             Where the vehicle is not in trim.
         """
-        if not self["A"]:
-            raise ValueError(f"no linear model: {self['trim']['status_detail']}")
-        n, m = len(self["states"]), len(self["controls"])
-        matrices = {"A": self["A"], "B": self["B"], "C": np.eye(n).tolist(), "D": np.zeros((n, m)).tolist()}
+        inputs = [*self["controls"], *WIND_INPUTS]
+        n, m = len(self["states"]), len(inputs)
+        both = np.hstack([self.B, self.W])
+        matrices = {"A": self["A"], "B": both.tolist(), "C": np.eye(n).tolist(), "D": np.zeros((n, m)).tolist()}
         states = [{"name": name} for name in self["states"]]
-        return LinearModel({**matrices, "states": states}, list(self["controls"]), list(self["states"]), None)
+        return LinearModel({**matrices, "states": states}, inputs, list(self["states"]), None)
 
     @property
     def A(self) -> npt.NDArray[np.float64]:
         """Of the averaged linear model: states by states."""
-        return self.model.A
+        return self._matrix("A")
 
     @property
     def B(self) -> npt.NDArray[np.float64]:
         """Of the averaged linear model: states by controls."""
-        return self.model.B
+        return self._matrix("B")
+
+    @property
+    def W(self) -> npt.NDArray[np.float64]:
+        """Of the averaged linear model: states by the velocity of the air along the axes of the body [m/s]."""
+        return self._matrix("W")
+
+    def _matrix(self, name: str) -> npt.NDArray[np.float64]:
+        if not self["A"]:
+            raise ValueError(f"no linear model: {self['trim']['status_detail']}")
+        return np.array(self[name], dtype=np.float64).reshape(len(self["states"]), -1)
 
     @property
     def averaged(self) -> npt.NDArray[np.complex128]:
@@ -118,7 +132,7 @@ class FlightStability(StudyResult):
         Returns
         -------
         control.StateSpace
-            From the deviations of the controls to those of all states, SI.
+            From the deviations of the controls and the wind to those of all states, SI.
 
         Raises
         ------
@@ -141,7 +155,7 @@ class FlightStability(StudyResult):
         Returns
         -------
         scipy.signal.StateSpace
-            From the deviations of the controls to those of all states, SI.
+            From the deviations of the controls and the wind to those of all states, SI.
 
         Raises
         ------
