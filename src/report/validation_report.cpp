@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <stdexcept>
 
 #include "report/described.hpp"
@@ -360,7 +361,7 @@ const Description<Validated>& set_description() {
 const Description<std::vector<Validated>>& validation_description() {
   using R = std::vector<Validated>;
   static const Description<R> description =
-      Description<R>().parts("sets", "measured sets", set_description(), [](const R& r) -> const R& { return r; });
+      Description<R>().parts("sets", "measured sets", set_description(), std::identity{});
   return description;
 }
 
