@@ -39,6 +39,9 @@ int run_flights(const ToleranceArguments& arguments) {
     if (!file->empty())
       throw InputError(option, 0, 0, "", "flights are neither written nor drawn; --json has their spread");
   }
+  if (arguments.allow_extrapolation) {
+    throw InputError("--allow-extrapolation", 0, 0, "", "is of the metrics of a cycle; with --flight leave it out");
+  }
   const ToleranceStudy study = read_tolerance_study(arguments.study, arguments.overrides);
   FlightCondition condition;
   if (!arguments.speed.empty()) condition.speed = quantity_of("--speed", arguments.speed, "m/s");

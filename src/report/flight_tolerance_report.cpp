@@ -22,13 +22,10 @@ struct FlightsFound {
 
 const Description<FlightSpread>& spread_description() {
   using R = FlightSpread;
-  static const Description<R> description = Description<R>()
-                                                .always("mean", "", "of the vehicles that fly", &R::mean)
-                                                .always("deviation", "", "standard deviation", &R::deviation)
-                                                .always("percentile_2_5", "", "", &R::p025)
-                                                .always("median", "", "", &R::median)
-                                                .always("percentile_97_5", "", "", &R::p975)
-                                                .always("centre", "", "at the parameters' means", &R::centre);
+  static const Description<R> description =
+      Description<R>()
+          .all_of(moments_description(), [](const R& r) -> SampleMoments { return r; })
+          .always("centre", "", "at the parameters' means", &R::centre);
   return description;
 }
 

@@ -222,13 +222,7 @@ const Description<OutputFound>& output_description() {
   using O = ToleranceOutput;
   static const Description<R> description =
       Description<R>()
-          .always("mean", "", "of the samples that count; the metric's unit", number(&O::mean))
-          .always("deviation", "", "standard deviation", number(&O::deviation))
-          .always("least", "", "", number(&O::min))
-          .always("percentile_2_5", "", "", number(&O::p025))
-          .always("median", "", "", number(&O::median))
-          .always("percentile_97_5", "", "", number(&O::p975))
-          .always("most", "", "", number(&O::max))
+          .all_of(moments_description(), [](const R& r) -> SampleMoments { return r.output; })
           .always("linear_mean", "", "predicted from the gradient at the parameters' means", number(&O::linear_mean))
           .always("linear_deviation", "", "the same of the standard deviation", number(&O::linear_deviation))
           .sometimes(

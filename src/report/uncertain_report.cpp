@@ -64,6 +64,20 @@ const Description<Probability>& probability_description() {
   return description;
 }
 
+const Description<SampleMoments>& moments_description() {
+  using R = SampleMoments;
+  static const Description<R> description =
+      Description<R>()
+          .always("mean", "", "of the samples that count; the unit of the quantity", &R::mean)
+          .always("deviation", "", "standard deviation", &R::deviation)
+          .always("least", "", "", &R::min)
+          .always("percentile_2_5", "", "", &R::p025)
+          .always("median", "", "", &R::median)
+          .always("percentile_97_5", "", "", &R::p975)
+          .always("most", "", "", &R::max);
+  return description;
+}
+
 std::vector<UncertainKey> uncertain_keys(const ToleranceStudy& study) {
   std::vector<UncertainKey> all;
   for (std::size_t k = 0; k < study.parameters.size(); ++k) all.push_back({study, k});

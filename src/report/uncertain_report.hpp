@@ -28,6 +28,7 @@ std::vector<UncertainKey> uncertain_keys(const ToleranceStudy& study);
 const Description<UncertainKey>& uncertain_description();
 
 const Description<Probability>& probability_description();
+const Description<SampleMoments>& moments_description();
 
 }  // namespace described
 

@@ -1,27 +1,24 @@
 #include "wingbeat/study/flight_tolerance.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <optional>
 
-#include "wingbeat/core/math.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
 namespace {
 
 constexpr FlightQuantity quantities[] = {
-    {"voltage_v", "V", "of the drives", [](const FlightSample& s) { return s.voltage; }},
-    {"power_electrical_w", "W", "mean, at the terminals of all drives", [](const FlightSample& s) { return s.power; }},
-    {"frequency_hz", "Hz", "of the first drive", [](const FlightSample& s) { return s.frequency; }},
-    {"pitch_rad", "rad", "attitude, nose up", [](const FlightSample& s) { return s.pitch; }},
-    {"longitudinal_growth_per_s", "1/s", "real part of the least stable longitudinal mode, averaged flight",
+    {"voltage_v", "of the drives", [](const FlightSample& s) { return s.voltage; }},
+    {"power_electrical_w", "mean, at the terminals of all drives", [](const FlightSample& s) { return s.power; }},
+    {"frequency_hz", "of the first drive", [](const FlightSample& s) { return s.frequency; }},
+    {"pitch_rad", "attitude, nose up", [](const FlightSample& s) { return s.pitch; }},
+    {"longitudinal_growth_per_s", "real part of the least stable longitudinal mode, averaged flight",
      [](const FlightSample& s) { return s.longitudinal.real(); }},
-    {"longitudinal_frequency_rad_per_s", "rad/s", "its imaginary part; 0 where it does not oscillate",
+    {"longitudinal_frequency_rad_per_s", "its imaginary part; 0 where it does not oscillate",
      [](const FlightSample& s) { return s.longitudinal.imag(); }},
-    {"lateral_growth_per_s", "1/s", "real part of the least stable lateral mode, averaged flight",
+    {"lateral_growth_per_s", "real part of the least stable lateral mode, averaged flight",
      [](const FlightSample& s) { return s.lateral.real(); }},
-    {"lateral_frequency_rad_per_s", "rad/s", "its imaginary part; 0 where it does not oscillate",
+    {"lateral_frequency_rad_per_s", "its imaginary part; 0 where it does not oscillate",
      [](const FlightSample& s) { return s.lateral.imag(); }}};
 
 FlightSample sample_of(const Design<double>& design, const FlightCondition& condition, const TrimResult* near,
@@ -43,22 +40,6 @@ FlightSample sample_of(const Design<double>& design, const FlightCondition& cond
   return sample;
 }
 
-FlightSpread spread_of(std::vector<double> values) {
-  std::erase_if(values, [](double x) { return !std::isfinite(x); });
-  FlightSpread spread;
-  if (values.empty()) return spread;
-  std::sort(values.begin(), values.end());
-  double sum = 0.0, squares = 0.0;
-  for (const double x : values) sum += x;
-  spread.mean = sum / double(values.size());
-  for (const double x : values) squares += square(x - spread.mean);
-  if (values.size() > 1) spread.deviation = std::sqrt(squares / double(values.size() - 1));
-  spread.p025 = percentile(values, 0.025);
-  spread.median = percentile(values, 0.5);
-  spread.p975 = percentile(values, 0.975);
-  return spread;
-}
-
 }  // namespace
 
 std::span<const FlightQuantity> flight_quantities() { return quantities; }
@@ -66,6 +47,8 @@ std::span<const FlightQuantity> flight_quantities() { return quantities; }
 FlightToleranceResult flight_tolerance(const ToleranceStudy& study, const FlightCondition& condition,
                                        const ForEach& for_each, const std::function<void(double)>& progress) {
   if (study.hold) throw ParameterError("study.hold", "trim finds the voltage of each vehicle: leave it out");
+  if (study.condition != Condition::air)
+    throw ParameterError("study.condition", "must be air: the vehicles are to fly");
   ToleranceStudy plain = study;
   plain.indices = false;
   const Sweep sweep = tolerance_sweep(plain);
@@ -104,8 +87,7 @@ FlightToleranceResult flight_tolerance(const ToleranceStudy& study, const Flight
   for (const FlightQuantity& quantity : quantities) {
     std::vector<double> values;
     for (const FlightSample& s : result.samples) values.push_back(quantity.of(s));
-    result.quantity.push_back(spread_of(std::move(values)));
-    result.quantity.back().centre = quantity.of(result.centre);
+    result.quantity.push_back({moments_of(values), quantity.of(result.centre)});
   }
   return result;
 }

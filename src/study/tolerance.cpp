@@ -69,26 +69,6 @@ std::vector<std::vector<double>> correlation_of(const ToleranceStudy& study, con
   return matrix;
 }
 
-/// Moments and percentiles of the values that are there.
-void describe(ToleranceOutput& output, std::span<const double> values) {
-  std::vector<double> there;
-  for (const double x : values) {
-    if (std::isfinite(x)) there.push_back(x);
-  }
-  if (there.empty()) return;
-  std::sort(there.begin(), there.end());
-  double sum = 0.0, squares = 0.0;
-  for (const double x : there) sum += x;
-  output.mean = sum / double(there.size());
-  for (const double x : there) squares += (x - output.mean) * (x - output.mean);
-  output.deviation = there.size() > 1 ? std::sqrt(squares / double(there.size() - 1)) : absent;
-  output.min = there.front();
-  output.p025 = percentile(there, 0.025);
-  output.median = percentile(there, 0.5);
-  output.p975 = percentile(there, 0.975);
-  output.max = there.back();
-}
-
 /// Whether every vehicle has a weight.
 bool states_mass(const ToleranceStudy& study) {
   return study.design.mass && std::all_of(study.combinations.begin(), study.combinations.end(),
@@ -96,6 +76,27 @@ bool states_mass(const ToleranceStudy& study) {
 }
 
 }  // namespace
+
+SampleMoments moments_of(std::span<const double> values) {
+  std::vector<double> there;
+  for (const double x : values) {
+    if (std::isfinite(x)) there.push_back(x);
+  }
+  SampleMoments moments;
+  if (there.empty()) return moments;
+  std::sort(there.begin(), there.end());
+  double sum = 0.0, squares = 0.0;
+  for (const double x : there) sum += x;
+  moments.mean = sum / double(there.size());
+  for (const double x : there) squares += (x - moments.mean) * (x - moments.mean);
+  moments.deviation = there.size() > 1 ? std::sqrt(squares / double(there.size() - 1)) : absent;
+  moments.min = there.front();
+  moments.p025 = percentile(there, 0.025);
+  moments.median = percentile(there, 0.5);
+  moments.p975 = percentile(there, 0.975);
+  moments.max = there.back();
+  return moments;
+}
 
 std::vector<ToleranceFactor> factors(const ToleranceStudy& study) {
   std::vector<ToleranceFactor> result;
@@ -307,7 +308,7 @@ ToleranceResult assess_tolerance(const ToleranceStudy& study, const SweepColumns
 
   const std::vector<std::uint32_t> combinations = drawn_combinations(study);
   const auto add_output = [&](ToleranceOutput& output, std::span<const double> values) {
-    describe(output, values.subspan(0, base));
+    static_cast<SampleMoments&>(output) = moments_of(values.subspan(0, base));
     if (!study.choices.empty()) detail::add_choice_effects(output, study, values.subspan(0, base), combinations);
   };
   std::vector<double> lift_to_weight;

@@ -66,6 +66,7 @@ TEST_F(FlightCommands, ToleranceOfHover) {
   EXPECT_EQ(bodiless.status, 2);
   EXPECT_EQ(run({"tolerance", path("few.toml"), "--flight", "-o", path("a.nc")}).status, 2);
   EXPECT_EQ(run({"tolerance", path("few.toml"), "--speed", "1 m/s"}).status, 2);
+  EXPECT_EQ(run({"tolerance", path("few.toml"), "--flight", "--allow-extrapolation"}).status, 2);
 }
 
 TEST_F(FlightCommands, RefuseInASentence) {

@@ -86,6 +86,9 @@ TEST(FlightTolerance, RefusesWhatTrimDecides) {
   ToleranceStudy held = study_of({{"vehicle.mass", 0.01}}, 2);
   held.hold = Hold{Held::frequency, 30.0};
   EXPECT_THROW(flight_tolerance(held, {}), ParameterError);
+  ToleranceStudy airless = study_of({{"vehicle.mass", 0.01}}, 2);
+  airless.condition = Condition::vacuum;
+  EXPECT_THROW(flight_tolerance(airless, {}), ParameterError);
   ToleranceStudy heavy = study_of({{"vehicle.mass", 0.01}}, 2);
   heavy.design.mass = 0.03;
   for (UncertainParameter& p : heavy.parameters) p.distribution.centre = 0.03;

@@ -7,7 +7,7 @@ namespace wingbeat::solver {
 
 /// Eigenvalues and eigenvectors of a real square matrix: values[k] belongs to vectors.col(k), pairs stand side by side.
 /// In `real_vectors` the two columns of a pair are the real and the imaginary part of a vector: they span the same
-/// space.
+/// space. NaN, all of them, where they were not found.
 struct EigenModes {
   bool found = false;
   Eigen::VectorXcd values;
@@ -17,7 +17,7 @@ struct EigenModes {
 
 EigenModes eigen_modes(const Eigen::MatrixXd& M);
 
-/// The eigenvalues alone.
+/// The eigenvalues alone; NaN where they were not found.
 Eigen::VectorXcd eigenvalues_of(const Eigen::MatrixXd& M);
 
 }  // namespace wingbeat::solver

@@ -29,15 +29,13 @@ struct FlightSample {
 /// A number of a sample that is looked at over all of them.
 struct FlightQuantity {
   const char* name;  ///< with its unit
-  const char* unit;
   const char* meaning;
   double (*of)(const FlightSample&);
 };
 std::span<const FlightQuantity> flight_quantities();
 
 /// One of flight_quantities() over the vehicles that fly.
-struct FlightSpread {
-  double mean = absent, deviation = absent, p025 = absent, median = absent, p975 = absent;
+struct FlightSpread : SampleMoments {
   double centre = absent;  ///< of the vehicle at the parameters' means
 };
 
@@ -52,7 +50,8 @@ struct FlightToleranceResult {
 };
 
 /// Draws the plain sample of `study`, study.count vehicles without those for indices, and trims each in `condition`.
-/// Throws ParameterError of a vehicle without a body, and where the study holds something: trim finds the voltage.
+/// Throws ParameterError of a vehicle without a body, where the study holds something, as trim finds the voltage, and
+/// where it is not in air.
 FlightToleranceResult flight_tolerance(const ToleranceStudy& study, const FlightCondition& condition,
                                        const ForEach& for_each = {}, const std::function<void(double)>& progress = {});
 

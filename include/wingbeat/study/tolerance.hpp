@@ -124,13 +124,19 @@ struct ChoiceEffect {
   double difference = absent;  ///< largest one of two conditional means; absent where an alternative has none
 };
 
-/// One output of the study. Moments and percentiles are of the vehicles that flap inside the model's domain, or of all
-/// that flap where extrapolation is allowed.
-struct ToleranceOutput {
-  std::string name;  ///< key of the metric; "flaps", "hovers" for 0 or 1
-  std::optional<Metric> metric;
+/// Moments and percentiles of samples; absent where there are none.
+struct SampleMoments {
   double mean = absent, deviation = absent;
   double min = absent, p025 = absent, median = absent, p975 = absent, max = absent;
+};
+/// Those of the values that are finite.
+SampleMoments moments_of(std::span<const double> values);
+
+/// One output of the study. Moments and percentiles are of the vehicles that flap inside the model's domain, or of all
+/// that flap where extrapolation is allowed.
+struct ToleranceOutput : SampleMoments {
+  std::string name;  ///< key of the metric; "flaps", "hovers" for 0 or 1
+  std::optional<Metric> metric;
   double linear_mean = absent, linear_deviation = absent;  ///< from the gradient at the parameters' means
   std::vector<double> linear_share;     ///< of the linear variance, by factor, NaN for a choice; empty if there is none
   std::optional<SobolIndices> indices;  ///< where it varies by more than the tolerance of the orbits
