@@ -52,10 +52,12 @@ class CycleGradient {
     if constexpr (shift == 0) {
       jets_.vehicle = vehicle;
     } else {
-      std::vector<W> numbers;
-      for_each_number(vehicle, [&](const J& x) { numbers.push_back(shifted(x)); });
-      std::size_t n = 0;
-      for_each_number(jets_.vehicle, [&](W& x) { x = numbers[n++]; });
+      std::array<const J*, number_count<Vehicle<J>>> from;
+      std::array<W*, number_count<Vehicle<J>>> to;
+      std::size_t n = 0, m = 0;
+      for_each_number(vehicle, [&](const J& x) { from[n++] = &x; });
+      for_each_number(jets_.vehicle, [&](W& x) { to[m++] = &x; });
+      for (std::size_t k = 0; k < n; ++k) *to[k] = shifted(*from[k]);
     }
     sharpen();
     for (auto& constant : absent_slots_) constant = false;
@@ -224,7 +226,7 @@ class CycleGradient {
     const auto& s = cycle_.steps[step];
     if (x == s.x) return starts_[step];
     const auto signs = solver::signs_of<Jets>(s);
-    return solver::take_step<false>(cycle_.method, jets_, system_, W(s.x), starts_[step], W(x - s.x), signs).y;
+    return solver::take_step<true>(cycle_.method, jets_, system_, W(s.x), starts_[step], W(x - s.x), signs).y;
   }
 
   /// True where step n begins with an impact on a stop.
@@ -264,7 +266,7 @@ class CycleGradient {
     if (which == switches) return W(0.0);
     const JetState& y = ends_[n - 1];
     const auto signs = solver::signs_of<Jets>(before);
-    const W value = jets_.template rates<false>(W(after.x), y, signs).switches[which];
+    const W value = jets_.template rates<true>(W(after.x), y, signs).switches[which];
     State state;
     for (int i = 0; i < N; ++i) state[i] = y[i].a;
     const State dy = system_.template rates<false>(after.x, state, before.signs).dy;
@@ -287,7 +289,7 @@ class CycleGradient {
     if (!place.at_end && !at_start) return state_at(place.step, place.x);
     const W move = move_of_node(at_start ? place.step : place.step + 1);
     JetState y = at_start ? starts_[place.step] : ends_[place.step];
-    const auto dy = jets_.template rates<false>(x, y, solver::signs_of<Jets>(step)).dy;
+    const auto dy = jets_.template rates<true>(x, y, solver::signs_of<Jets>(step)).dy;
     for (int n = 0; n < N; ++n) y[n] += dy[n] * move;
     x += move;
     return y;
