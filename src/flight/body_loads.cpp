@@ -32,19 +32,18 @@ MountLoads<double> hinged_loads(const Vehicle<double>& v, const PitchState<doubl
   const double even = even_normal_force(w, p, state.psi);
   TranslationLoads<double> strips;
   const ChordwiseForce<double> along = add_strips_in_flow(w, p, mount, drift, state, mode.stroke, even, strips);
+  TranslationLoads<double> tips;
+  add_tip_drag(w, state, mode.stroke, centre_of_pressure(p, m.aero.angle_of_attack) - p.axis, tips);
   // What the rotation and the air's inertia add is the same on every wing.
-  const double speed = mode.stroke * state.stroke_velocity, rho = w.air_density * state.clap;
-  const double rotation = p.rotational_coefficient * rho * speed * state.velocity;
-  const double breadth = square(square(1.0 - p.axis)) + square(square(p.axis));
-  const double damping =
-      0.125 * rho * p.damping_coefficient * mode.turn * square(state.velocity) * p.moments.s40 * breadth;
+  const auto [rotation, damping] = pitch_rotation(w, p, p.moments.s40, state, mode.stroke, mode.turn);
   const double turning = m.stroke_acceleration * state.cos_psi - state.stroke_velocity * state.velocity * state.sin_psi;
-  const double normal =
-      strips.normal + mount.share * (rotation * p.moments.s21 + p.air.r * turning + p.air.p * m.pitch_acceleration);
-  const double by_radius = strips.stroke_moment + mount.share * (rotation * p.moments.s22 + p.air.rr * turning +
-                                                                 p.air.rp * m.pitch_acceleration);
+  const double normal = strips.normal + mount.share * (tips.normal + rotation * p.moments.s21 + p.air.r * turning +
+                                                       p.air.p * m.pitch_acceleration);
+  const double by_radius = strips.stroke_moment + mount.share * (tips.stroke_moment + rotation * p.moments.s22 +
+                                                                 p.air.rr * turning + p.air.rp * m.pitch_acceleration);
   pitch_moment =
-      mount.sense * (strips.pitch_moment + mount.share * ((0.5 - p.axis) * rotation * p.moments.s31 + damping));
+      mount.sense *
+      (strips.pitch_moment + mount.share * (tips.pitch_moment + (0.5 - p.axis) * rotation * p.moments.s31 + damping));
   // Of the angles of the vehicle; ahead is each wing's own.
   const double sin_psi = state.sin_psi, cos_psi = state.cos_psi, sense = mount.sense;
   MountLoads<double> loads;

@@ -6,6 +6,7 @@
 #include <Eigen/Eigenvalues>
 #include <cmath>
 #include <memory>
+#include <utility>
 
 #include "flight/flight_vehicles.hpp"
 #include "wingbeat/core/jet.hpp"
@@ -31,8 +32,13 @@ SteadyFlapping orbit_in(const FlightVehicle& v, const SteadyMotion& motion) {
 }
 
 TEST(AveragedFlight, IsTheOrbitsMeanAtRestAndInMotion) {
-  for (const char* name : {"friction2022", "purdue"}) {
-    const FlightVehicle v = flying(name);
+  for (const auto& [name, lifting_span] : {std::pair{"friction2022", 1.0}, {"friction2022", 0.9}, {"purdue", 0.9}}) {
+    Design<double> design = flying_design(name);
+    design.aerodynamics.lifting_span = lifting_span;
+    if (lifting_span < 1.0) {
+      design.wing.planform = {.shape = PlanformShape::semi_ellipse, .length = 0.07, .root_chord = 0.026};
+    }
+    const FlightVehicle v = flight_vehicle(design);
     for (const SteadyMotion& motion : {SteadyMotion{}, SteadyMotion{{0.6, 0.3, -0.4}, {2.0, -3.0, 1.0}}}) {
       AveragedFlight flight(v);
       const std::optional<MeanFlight> mean = flight.at(at_voltage(v.stated_voltage), motion);

@@ -57,6 +57,26 @@ struct PitchAeroLoads {
   S tangential_lift = S(0.0);  ///< of the force along the chord, and all lift of a table [N]
 };
 
+/// What pitching adds to translation, of all wings.
+template <Scalar S>
+struct PitchRotation {
+  S circulation;  ///< q_rot of aero_loads_of(): times a chord moment, a force normal to the chord at mid-chord [kg/(m
+                  ///< s2)]
+  S damping;      ///< moment about the pitch axis [N m]
+};
+
+/// `s40` is the chord moment of the damping; the signs as in aero_loads_of().
+template <Scalar S>
+PitchRotation<S> pitch_rotation(const BladeElement<S>& w, const PitchingWings<S>& p, const S& s40,
+                                const PitchState<S>& state, const S& stroke, const S& turn) {
+  const S rho = w.air_density * state.clap;
+  const S speed = stroke * state.stroke_velocity;
+  const S ahead = p.axis, behind = S(1.0) - p.axis;
+  const S breadth = square(square(behind)) + square(square(ahead));
+  return {p.rotational_coefficient * rho * speed * state.velocity,
+          S(0.125) * rho * p.damping_coefficient * turn * square(state.velocity) * s40 * breadth};
+}
+
 /// What the air does at a pitch state; `stroke` and `turn` are the signs of beta' and psi'. With TranslationLoads and
 /// the chord moments of all wings (model.md section 12):
 /// \f[
@@ -76,16 +96,11 @@ template <Scalar S, class InWake>
 PitchAeroLoads<S> aero_loads_of(const BladeElement<S>& w, const PitchingWings<S>& p, const S& s2, const S& s3,
                                 const PitchChordMoments<S>& moments, const PitchState<S>& state, const S& stroke,
                                 const S& turn, const InWake& in_wake) {
-  const S rho = w.air_density * state.clap;
-  const S speed = stroke * state.stroke_velocity;
   const S alpha = S(0.5 * pi) + stroke * state.psi;
   TranslationLoads<S> translation;
   if (has_wake(w) || has_flow(w)) in_wake(alpha, translation);
   else translation = translation_loads(w, p, s2, s3, moments.s22, state, stroke, alpha);
-  const S rotation = p.rotational_coefficient * rho * speed * state.velocity;
-  const S ahead = p.axis, behind = S(1.0) - p.axis;
-  const S breadth = square(square(behind)) + square(square(ahead));
-  const S damping = S(0.125) * rho * p.damping_coefficient * turn * square(state.velocity) * moments.s40 * breadth;
+  const auto [rotation, damping] = pitch_rotation(w, p, moments.s40, state, stroke, turn);
   PitchAeroLoads<S> loads;
   loads.angle_of_attack = alpha;
   loads.normal_force = translation.normal + rotation * moments.s21;
