@@ -185,6 +185,22 @@ py::dict tolerance(const std::string& file, const std::vector<std::string>& over
   return reported(detail::tolerance_tree(study, found), text_tolerance(study, found));
 }
 
+py::dict tolerance_of_flight(const std::string& file, const std::vector<std::string>& overrides, double speed,
+                             int threads, const py::object& progress) {
+  forget_files();
+  const ToleranceStudy study = read_tolerance_study(find_input(file, InputKind::study), overrides);
+  const FlightCondition condition{speed};
+  const FlightToleranceResult found = watched(progress, [&](Watch& watch) {
+    SweepProgress now{.designs = study.count};
+    return flight_tolerance(study, condition, side_by_side(threads), [&](double share) {
+      now.done = std::uint64_t(std::llround(share * double(study.count)));
+      watch.report(now);
+    });
+  });
+  return reported(detail::Json::parse(json_flight_tolerance(study, condition, found)),
+                  text_flight_tolerance(study, condition, found));
+}
+
 py::dict linearise(const Design<double>& design, const std::string& condition, std::optional<double> frequency,
                    std::optional<double> lift, bool allow_extrapolation, int cycles, double hinge_offset, bool maps) {
   ControlOptions options;
@@ -209,6 +225,7 @@ void add_studies(py::module_& m) {
   m.def("identify_motor", &identify);
   m.def("fit", &fit);
   m.def("tolerance", &tolerance);
+  m.def("flight_tolerance", &tolerance_of_flight);
   m.def("linearise", &linearise);
 }
 

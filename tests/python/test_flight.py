@@ -159,6 +159,21 @@ class SteadyFlight(unittest.TestCase):
         self.assertEqual(dict(found), printed("trim", file, "--speed", "0.4 m/s")["flights"][0])
         found = flyer().flight_stability()
         self.assertEqual(dict(found), printed("stability", file))
+        study = DATA / "studies" / "tolerance-flight.toml"
+        of_program = printed("tolerance", study, "--flight", "--speed", "0.4 m/s", "--threads", "2")
+        counts = []
+        found = wb.flight_tolerance(study, speed=0.4, progress=lambda done, all_of_them: counts.append((done, all_of_them)))
+        self.assertEqual(dict(found), of_program)
+        self.assertEqual({count for _, count in counts}, {64})
+        self.assertEqual(counts, sorted(counts))
+
+    def test_what_has_no_body_does_not_fly(self):
+        spread = {"key": "friction.radius", "distribution": "normal", "relative_deviation": 0.1}
+        study = {"samples": {"count": 4}, "parameter": [spread]}
+        with self.assertRaisesRegex(wb.InputError, "body.inertia_pitch: missing: flight needs"):
+            wb.read("friction2022").flight_tolerance(study)
+        with self.assertRaisesRegex(wb.InputError, 'speed: expected a quantity in m/s, got "3 kg"'):
+            flyer().flight_tolerance(study, speed="3 kg")
 
     def test_controls_of_trim(self):
         hover = flyer("flight-purdue").trim()

@@ -42,7 +42,7 @@ from ._solve import solve
 from ._studies import Flight, Found, Identification, StudyResult, endurance, identify_motor, tolerance
 from ._sweep import open_dataset, sweep
 from ._tables import Metric, Parameter, metrics, parameters
-from ._trim import FlightStability, Trim, flight_stability, trim
+from ._trim import FlightStability, Trim, flight_stability, flight_tolerance, trim
 from ._vehicle import Vehicle, read, shipped
 
 __all__ = [
@@ -80,6 +80,7 @@ __all__ = [
     "export_mjcf",
     "fit",
     "flight_stability",
+    "flight_tolerance",
     "identify_motor",
     "kinematics",
     "linearise",

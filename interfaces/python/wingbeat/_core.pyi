@@ -186,6 +186,13 @@ def tolerance(
     threads: int,
     progress: Callable[[int, int], object] | None,
 ) -> dict[str, Any]: ...
+def flight_tolerance(
+    file: bytes,
+    overrides: Sequence[str],
+    speed: float,
+    threads: int,
+    progress: Callable[[int, int], object] | None,
+) -> dict[str, Any]: ...
 def optimise(
     file: bytes,
     overrides: Sequence[str],

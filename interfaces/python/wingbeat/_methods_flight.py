@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Any
 
 from ._operations import method_of, operations
 
 if TYPE_CHECKING:
     from ._flight import FlightSimulation
+    from ._studies import StudyResult
     from ._trim import FlightStability, Trim
 
 
@@ -67,6 +69,29 @@ class FlightMethods:
         """
         return operations["flight_stability"](  # type: ignore[no-any-return]
             self, speed=speed, climb=climb, turn_rate=turn_rate, sensitivity=sensitivity
+        )
+
+    @method_of("flight_tolerance")
+    def flight_tolerance(
+        self,
+        study: Mapping[str, Any],
+        *,
+        speed: float | str = 0.0,
+        values: Mapping[str, Any] | None = None,
+        threads: int = 0,
+        progress: bool | Callable[[int, int], object] | None = None,
+    ) -> StudyResult:
+        """What uncertain parameters do to its steady flight: `wingbeat.flight_tolerance`.
+
+        Examples
+        --------
+        >>> spread = {"key": "vehicle.mass", "distribution": "normal", "relative_deviation": 0.02}
+        >>> found = wb.read("flight-friction2022").flight_tolerance({"samples": {"count": 16}, "parameter": [spread]})
+        >>> found["flight"]["voltage_v"]["deviation"] > 0
+        True
+        """
+        return operations["flight_tolerance"](  # type: ignore[no-any-return]
+            self, study, speed=speed, values=values, threads=threads, progress=progress
         )
 
     @method_of("export_mjcf")

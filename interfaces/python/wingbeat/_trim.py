@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from . import _core
-from ._arguments import flag, number
+from ._arguments import callback, flag, number, threads_of
 from ._flight import BodyState, body_of, ranges_of, settings_of
 from ._linear import LinearModel
 from ._operations import operation
 from ._quantity import Quantity
-from ._studies import StudyResult
+from ._progress import shown
+from ._studies import StudyResult, file_of, values_of, vehicle_and_study, vehicle_first
 from ._vehicle import Vehicle, vehicle_of
 
 if TYPE_CHECKING:
     import numpy.typing as npt
+
+    from ._studies import Study
 
 
 #: Inputs of linear models of flights beside the controls: the velocity of the air along the axes of the body in trim.
@@ -256,3 +260,57 @@ def flight_stability(
         vehicle_of(vehicle)._design, *_condition(speed, climb, turn_rate), flag("sensitivity", sensitivity)
     )
     return FlightStability(found, vehicle)
+
+
+@operation
+@vehicle_first("study")
+def flight_tolerance(
+    vehicle: Vehicle | Study,
+    study: Mapping[str, Any] | None = None,
+    *,
+    speed: float | str = 0.0,
+    values: Mapping[str, Any] | None = None,
+    threads: int = 0,
+    progress: bool | Callable[[int, int], object] | None = None,
+) -> StudyResult:
+    """What uncertain parameters do to a vehicle's steady flight and its modes: `wingbeat tolerance --flight`.
+
+    Parameters
+    ----------
+    vehicle : Vehicle, path or dict
+        As `wingbeat.tolerance` takes it; the vehicle has a body.
+    study : dict
+        With a Vehicle: the tables of a study file, without a vehicle.
+    speed : float or str, default 0.0
+        Horizontal, against the air [m/s].
+    values : dict, optional
+        Keys of the vehicle with other values: SI numbers, or texts with a unit.
+    threads : int, default 0
+        Number of threads at most; 0: one for each core.
+    progress : bool or function, optional
+        True shows a bar (tqdm where it is installed), a function is called with vehicles done and vehicles.
+
+    Returns
+    -------
+    StudyResult
+        The keys of `wingbeat tolerance --flight --json`.
+
+    Raises
+    ------
+    InputError
+        For a study that cannot be used, and for a vehicle without a body.
+    TypeError
+        For a Vehicle without a study, and for a Vehicle beside a study file, which names its own.
+
+    Examples
+    --------
+    >>> spread = {"key": "body.inertia_pitch", "distribution": "normal", "relative_deviation": 0.1}
+    >>> study = {"samples": {"count": 16}, "parameter": [spread]}
+    >>> found = wb.flight_tolerance(wb.read("flight-friction2022"), study)
+    >>> found["flies"]["share"], found["unstable"]["count"]
+    (1.0, 16)
+    """
+    base, tables = vehicle_and_study(vehicle, study)
+    forward, overrides = number("speed", speed, "m/s"), values_of(values)
+    with file_of(tables, base) as file, shown(callback(progress), 0) as tell:
+        return StudyResult(_core.flight_tolerance(file, overrides, forward, threads_of(threads), tell))
