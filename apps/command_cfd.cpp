@@ -32,8 +32,7 @@ namespace {
 Design<double> read_alike(const OperatingPointArguments& arguments, RunOptions& options) {
   const VehicleFile vehicle = read_operating_point(arguments, options);
   if (!vehicle.sides) return vehicle.design;
-  throw InputError(arguments.vehicle, 0, 0, "left",
-                   "this takes no vehicle whose sides differ; wingbeat run and wingbeat linearise do");
+  throw InputError(arguments.vehicle, 0, 0, "left", sides_refused);
 }
 
 /// Of wings on hinges the rows grow with the cube of the values.

@@ -11,8 +11,8 @@
 #include "options.hpp"
 #include "plot_option.hpp"
 #include "wingbeat/files/control_file.hpp"
+#include "wingbeat/files/flight_file.hpp"
 #include "wingbeat/files/output_file.hpp"
-#include "wingbeat/files/two_sides_file.hpp"
 #include "wingbeat/report/flight_report.hpp"
 
 namespace wingbeat::app {
@@ -34,8 +34,7 @@ FlightVehicle read_flight_vehicle(const FlightArguments& a, Design<double>& desi
   const VehicleFile file = read_vehicle(a.vehicle, a.overrides);
   design = file.design;
   try {
-    if (file.sides) return flight_vehicle(design, &file.sides->right, &file.sides->left);
-    return flight_vehicle(design);
+    return flight_vehicle(file);
   } catch (const ParameterError& e) {
     throw InputError(a.vehicle, 0, 0, e.key(), e.reason());
   }

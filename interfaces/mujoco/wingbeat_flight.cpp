@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "wingbeat/files/design_file.hpp"
+#include "wingbeat/files/flight_file.hpp"
 #include "wingbeat/flight/simulation.hpp"
 #include "wingbeat/flight/trim.hpp"
 
@@ -89,7 +89,7 @@ extern "C" {
 wingbeat_flight* wingbeat_flight_create(const char* vehicle_file) {
   wingbeat_flight* made = nullptr;
   guarded([&] {
-    const FlightVehicle vehicle = flight_vehicle(read_design(vehicle_file));
+    const FlightVehicle vehicle = flight_vehicle(read_vehicle(vehicle_file));
     if (vehicle.wing_mass > 0.0) throw std::runtime_error("body.wing_mass: is not known of a body that another moves");
     made = new wingbeat_flight{vehicle, FlightSimulation(vehicle)};
   });

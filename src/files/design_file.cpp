@@ -455,9 +455,7 @@ InputError::InputError(std::string file, int line, int column, std::string key, 
 Design<double> design_of(Document document, std::span<const Setting> settings, std::span<const std::string> overrides,
                          const TableLoader& load_table) {
   for (const auto& [name, side] : document.sides) {
-    document.errors.attempt([&, &n = name, &at = side.origin] {
-      at.refuse(n, "this takes no vehicle whose sides differ; wingbeat run and wingbeat linearise do");
-    });
+    document.errors.attempt([&, &n = name, &at = side.origin] { at.refuse(n, sides_refused); });
   }
   document.errors.attempt([&] { apply_overrides(document, settings, overrides); });
   return Reader(document, load_table).read();

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "files/toml_document.hpp"
+#include "wingbeat/files/two_sides_file.hpp"
 #include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
@@ -21,5 +22,9 @@ Design<double> design_of(Document document, std::span<const Setting> settings,
 /// As read_design, with settings before the overrides.
 Design<double> read_design(const std::filesystem::path& file, std::span<const Setting> settings,
                            std::span<const std::string> overrides);
+
+/// As read_vehicle, with settings before the overrides, of either side too.
+VehicleFile read_vehicle(const std::filesystem::path& file, std::span<const Setting> settings,
+                         std::span<const std::string> overrides);
 
 }  // namespace wingbeat

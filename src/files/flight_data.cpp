@@ -68,9 +68,13 @@ void write_flight(const FlightFile& file, const FlightRecord& flight, const std:
   write_provenance(data, {.title = file.title.empty() ? "flight" : file.title,
                           .command = "fly",
                           .version = version,
-                          .vehicle = write_design(file.design),
+                          .vehicle = write_design(file.source.design),
                           .study = input,
                           .tolerance = file.plan.tolerance});
+  if (file.source.sides) {
+    data.set_attribute("vehicle_left", write_design(file.source.sides->left));
+    data.set_attribute("vehicle_right", write_design(file.source.sides->right));
+  }
   data.set_attribute("outcome", name_of(flight.outcome));
   data.set_attribute("outcome_detail", flight.detail);
   const auto time = data.define_dimension("time", flight.rows.size());
@@ -81,7 +85,7 @@ void write_flight(const FlightFile& file, const FlightRecord& flight, const std:
     data.write(data.define_variable(name, {time}, unit, meaning), values);
   };
   put("time", "s", "since the start", &FlightRow::time);
-  for (const FlightColumn& c : flight_columns(file.vehicle, has_battery(file.design.supply.type))) {
+  for (const FlightColumn& c : flight_columns(file.vehicle, has_battery(file.source.design.supply.type))) {
     put(c.name, c.unit, c.meaning, c.value);
   }
   data.close();

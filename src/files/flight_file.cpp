@@ -30,10 +30,10 @@ class FlightReader : public detail::StudySections {
         attempt([&] { refuse(*node, fmt::format("study.{}", key), "has no place in a flight"); });
       }
     }
-    if (!attempt([&] { file_.design = read_vehicle(folder_); })) finish();
+    if (!attempt([&] { file_.source = read_sides(folder_); })) finish();
     attempt([&] {
       try {
-        file_.vehicle = flight_vehicle(file_.design);
+        file_.vehicle = flight_vehicle(file_.source);
       } catch (const ParameterError& e) {
         refuse_file("study", "vehicle", fmt::format("{}: {}", e.key(), e.reason()));
       }
@@ -271,6 +271,11 @@ class FlightReader : public detail::StudySections {
 };
 
 }  // namespace
+
+FlightVehicle flight_vehicle(const VehicleFile& file) {
+  if (file.sides) return flight_vehicle(file.design, &file.sides->right, &file.sides->left);
+  return flight_vehicle(file.design);
+}
 
 FlightFile read_flight_file(const fs::path& file, std::span<const std::string> overrides) {
   return FlightReader(file, read_text_file(file), overrides).read();

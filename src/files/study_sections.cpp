@@ -55,9 +55,9 @@ void StudySections::refuse_file(const char* section, const char* key, const std:
   refuse(*node, fmt::format("{}.{}", section, key), message);
 }
 
-Design<double> StudySections::vehicle_in(const std::filesystem::path& vehicle,
-                                         std::span<const KeySettings* const> further) const {
-  const Design<double> alone = read_design(vehicle, overrides_);  // its own errors come first, at its own lines
+template <class Read>
+auto StudySections::with_settings(SupplyType supply, std::span<const KeySettings* const> further,
+                                  const Read& read) const {
   std::vector<Setting> settings;
   std::vector<std::string> shown;
   const auto set = [&](const std::string& key, const TomlNode& value, std::string name) {
@@ -69,10 +69,10 @@ Design<double> StudySections::vehicle_in(const std::filesystem::path& vehicle,
   };
   set_all(set_);
   for (const KeySettings* given : further) set_all(*given);
-  const char* voltage = is_sine(alone.supply.type) ? "supply.amplitude" : "supply.voltage";
+  const char* voltage = is_sine(supply) ? "supply.amplitude" : "supply.voltage";
   if (held_voltage_) set(voltage, *held_voltage_, "study.hold.voltage");
   try {
-    return read_design(vehicle, settings, overrides_);
+    return read(settings);
   } catch (const InputError& error) {
     InputErrors errors;
     const auto add = [&](const InputError& e) {
@@ -88,6 +88,20 @@ Design<double> StudySections::vehicle_in(const std::filesystem::path& vehicle,
     errors.refuse();
     throw;
   }
+}
+
+Design<double> StudySections::vehicle_in(const std::filesystem::path& vehicle,
+                                         std::span<const KeySettings* const> further) const {
+  const Design<double> alone = read_design(vehicle, overrides_);  // its own errors come first, at its own lines
+  return with_settings(alone.supply.type, further,
+                       [&](std::span<const Setting> settings) { return read_design(vehicle, settings, overrides_); });
+}
+
+VehicleFile StudySections::sides_in(const std::filesystem::path& vehicle) const {
+  const VehicleFile alone = wingbeat::read_vehicle(vehicle, overrides_);
+  return with_settings(alone.design.supply.type, {}, [&](std::span<const Setting> settings) {
+    return wingbeat::read_vehicle(vehicle, settings, overrides_);
+  });
 }
 
 void StudySections::known_keys(const TomlNode& table, const std::string& section,
@@ -253,13 +267,21 @@ std::string StudySections::read_title() const {
   return title ? text_of(*title, "study.title", "a text") : "";
 }
 
-Design<double> StudySections::read_vehicle(const std::filesystem::path& folder,
-                                           std::span<const KeySettings* const> further) const {
-  const std::filesystem::path vehicle = find_vehicle(folder, vehicle_file());
+std::filesystem::path StudySections::found_vehicle(const std::filesystem::path& folder) const {
+  std::filesystem::path vehicle = find_vehicle(folder, vehicle_file());
   if (!is_there(vehicle)) {
     refuse_file("study", "vehicle", fmt::format("there is no file {}", vehicle.string()));
   }
-  return vehicle_in(vehicle, further);
+  return vehicle;
+}
+
+Design<double> StudySections::read_vehicle(const std::filesystem::path& folder,
+                                           std::span<const KeySettings* const> further) const {
+  return vehicle_in(found_vehicle(folder), further);
+}
+
+VehicleFile StudySections::read_sides(const std::filesystem::path& folder) const {
+  return sides_in(found_vehicle(folder));
 }
 
 Metric StudySections::metric_called(const TomlNode& node, const std::string& where, const std::string& name) const {

@@ -18,6 +18,7 @@
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/design_parameter.hpp"
+#include "wingbeat/files/two_sides_file.hpp"
 #include "wingbeat/study/hold.hpp"
 
 namespace wingbeat::detail {
@@ -84,6 +85,8 @@ class StudySections : public TomlReader {
   /// The vehicle in a file with [set], further settings, a held voltage and the overrides of the command line.
   Design<double> vehicle_in(const std::filesystem::path& vehicle,
                             std::span<const KeySettings* const> further = {}) const;
+  /// vehicle_in() of a file that may have sides.
+  VehicleFile sides_in(const std::filesystem::path& vehicle) const;
 
  protected:
   void known_keys(const TomlNode& table, const std::string& section,
@@ -110,6 +113,7 @@ class StudySections : public TomlReader {
   /// The vehicle with [set], its file being sought in that folder.
   Design<double> read_vehicle(const std::filesystem::path& folder,
                               std::span<const KeySettings* const> further = {}) const;
+  VehicleFile read_sides(const std::filesystem::path& folder) const;
   /// Adds the keys of a table in which sections may be nested, below `path`.
   void read_keys(const TomlNode& table, const std::string& path, KeySettings& into) const;
   Metric metric_called(const TomlNode& node, const std::string& where, const std::string& name) const;
@@ -132,6 +136,10 @@ class StudySections : public TomlReader {
   KeySettings set_{{}, "set"};
 
  private:
+  /// What `read` makes of [set], further settings and a held voltage; what it refuses names their lines.
+  template <class Read>
+  auto with_settings(SupplyType supply, std::span<const KeySettings* const> further, const Read& read) const;
+  std::filesystem::path found_vehicle(const std::filesystem::path& folder) const;
   const std::string* override_of(std::string_view key) const;
   void check_overrides() const;
   void find_hold();

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <utility>
+#include <vector>
 
 #include "files/design_settings.hpp"
 #include "files/input_errors.hpp"
@@ -38,9 +39,10 @@ bool is_shared(std::string_view path) {
   return section == "vehicle" || section == "supply" || path == "transmission" || path == "transmission.type";
 }
 
-VehicleFile vehicle_of(Document document, std::span<const std::string> overrides, const TableLoader& load_table) {
+VehicleFile vehicle_of(Document document, std::span<const Setting> settings, std::span<const std::string> overrides,
+                       const TableLoader& load_table) {
   const std::map<std::string, SideTable> tables = std::exchange(document.sides, {});
-  const Design<double> whole = design_of(document, {}, overrides, load_table);
+  const Design<double> whole = design_of(document, settings, overrides, load_table);
   if (tables.empty()) return {whole, std::nullopt};
   InputErrors errors;
   const std::string complaint = complaint_about(whole);
@@ -59,7 +61,9 @@ VehicleFile vehicle_of(Document document, std::span<const std::string> overrides
     Design<double> design = whole;
     const auto found = tables.find(name);
     if (found == tables.end()) return design;
-    errors.attempt([&] { design = design_of(document, found->second.settings, overrides, load_table); });
+    std::vector<Setting> of_side = found->second.settings;
+    of_side.insert(of_side.end(), settings.begin(), settings.end());
+    errors.attempt([&] { design = design_of(document, of_side, overrides, load_table); });
     return design;
   };
   TwoSides sides{whole, side("left"), side("right")};
@@ -78,14 +82,19 @@ VehicleFile vehicle_of(Document document, std::span<const std::string> overrides
 
 }  // namespace
 
-VehicleFile read_vehicle(const std::filesystem::path& file, std::span<const std::string> overrides) {
-  return vehicle_of(parse_document(read_text_file(file), input_name(file)), overrides,
+VehicleFile read_vehicle(const std::filesystem::path& file, std::span<const Setting> settings,
+                         std::span<const std::string> overrides) {
+  return vehicle_of(parse_document(read_text_file(file), input_name(file)), settings, overrides,
                     [&](const std::string& name) { return read_text_file(file.parent_path() / name); });
+}
+
+VehicleFile read_vehicle(const std::filesystem::path& file, std::span<const std::string> overrides) {
+  return read_vehicle(file, {}, overrides);
 }
 
 VehicleFile parse_vehicle(std::string_view text, std::string_view file_name, std::span<const std::string> overrides,
                           const TableLoader& load_table) {
-  return vehicle_of(parse_document(text, file_name), overrides, load_table);
+  return vehicle_of(parse_document(text, file_name), {}, overrides, load_table);
 }
 
 }  // namespace wingbeat

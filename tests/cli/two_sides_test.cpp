@@ -1,4 +1,4 @@
-// Vehicles whose sides differ: what run and linearise make of them, and that no other command takes them.
+// Vehicles whose sides differ: run, linearise and the commands of flight take them, no other does.
 #include <gmock/gmock.h>
 
 #include <cmath>
@@ -52,13 +52,33 @@ TEST_F(TwoSides, LineariseGivesMapsThatNeedNotVanish) {
   EXPECT_THAT(run({"linearise", trimmed}).out, HasSubstr("split_cycle_cosine [1]"));
 }
 
+TEST_F(TwoSides, FlyByControlsThatDiffer) {
+  const std::string text = read(data + "/designs/flight-purdue.toml");
+  std::ofstream(path("uneven.toml")) << text + "\n[right]\n\"motor.armature_resistance\" = \"14 ohm\"\n";
+  const std::string study = "[study]\nvehicle = \"uneven.toml\"\nduration = \"0.4 s\"\n[controller]\ntype = \"lqr\"\n";
+  std::ofstream(path("fly.toml")) << study;
+  std::ofstream(path("heavy.toml")) << study + "[set]\nvehicle.mass = \"13 g\"\n";
+  const Json trim = run({"trim", path("uneven.toml"), "--json"}).json()["flights"][0];
+  EXPECT_GT(std::abs(trim["control_voltage_difference_v"].get<double>()), 0.1);
+  const Outcome flown = run({"fly", path("fly.toml"), "-o", path("fly.nc"), "--json"});
+  ASSERT_EQ(flown.status, 0) << flown.err;
+  const Json flight = flown.json();
+  EXPECT_EQ(flight["outcome"], "completed");
+  EXPECT_NEAR(flight["power_electrical_w"].get<double>(), trim["power_electrical_w"].get<double>(),
+              0.02 * trim["power_electrical_w"].get<double>());
+  // [set] of the flight holds for both sides.
+  EXPECT_GT(run({"fly", path("heavy.toml"), "--json"}).json()["power_electrical_w"].get<double>(),
+            1.02 * flight["power_electrical_w"].get<double>());
+  EXPECT_THAT(read(path("fly.nc")), AllOf(HasSubstr("vehicle_left"), HasSubstr("vehicle_right")));
+}
+
 TEST_F(TwoSides, OthersRefuseThem) {
   const auto complaint = [&](const std::vector<std::string>& arguments) {
     const Outcome o = run(arguments);
     EXPECT_EQ(o.status, 2) << o.out;
     return o.err;
   };
-  const char* why = "this takes no vehicle whose sides differ; wingbeat run and wingbeat linearise do";
+  const char* why = "this takes no vehicle whose sides differ; wingbeat run, linearise, trim, stability and fly do";
   EXPECT_THAT(complaint({"scale", trimmed, "--wing", "1.1"}), HasSubstr(why));
   EXPECT_THAT(complaint({"endurance", trimmed}), HasSubstr(why));
   EXPECT_THAT(complaint({"export-fmu", trimmed, "-o", path("v.fmu")}), HasSubstr("sides differ"));

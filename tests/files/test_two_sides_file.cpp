@@ -137,8 +137,8 @@ TEST(TwoSidesFile, OtherReadersRefuseIt) {
     FAIL();
   } catch (const InputError& error) {
     EXPECT_EQ(std::string(error.what()), "v.toml:" + line_after_plain() +
-                                             ":2: left: this takes no vehicle whose sides differ; wingbeat run and "
-                                             "wingbeat linearise do");
+                                             ":2: left: this takes no vehicle whose sides differ; wingbeat run, "
+                                             "linearise, trim, stability and fly do");
   }
 }
 

@@ -328,6 +328,22 @@ class Loads(unittest.TestCase):
         np.testing.assert_allclose(torque, mean, atol=1e-4 * weight)
         self.assertGreater(np.abs(torque).max(), 1e-3 * weight)
 
+    def test_sides_that_differ(self):
+        controls, qpos, qvel = np.zeros(7), np.zeros(7), np.zeros(6)
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "uneven.toml"
+            alike = (DATA / "designs" / "flight-purdue.toml").read_text()
+            file.write_text(f'{alike}\n[right]\n"motor.armature_resistance" = "14 ohm"\n')
+            flight = self.loads.wingbeat_flight_create(bytes(file))
+            self.assertEqual(self.call("trim", flight, 0.0, controls, qpos, qvel), 0)
+            self.loads.wingbeat_flight_free(ctypes.c_void_p(flight))
+            difference = [self.loads.wingbeat_flight_control_name(k) for k in range(7)].index(b"voltage_difference")
+            self.assertGreater(abs(controls[difference]), 0.1)
+            if PROGRAM:
+                done = subprocess.run([PROGRAM, "trim", file, "--json"], capture_output=True, text=True, check=True)
+                expected = json.loads(done.stdout)["flights"][0]["control_voltage_difference_v"]
+                self.assertAlmostEqual(controls[difference], expected, 12)
+
     def test_errors(self):
         names = [self.loads.wingbeat_flight_control_name(k) for k in range(8)]
         self.assertEqual(names[::4] + names[7:], [b"voltage", b"mean_stroke_angle", None])

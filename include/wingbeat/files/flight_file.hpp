@@ -5,15 +5,18 @@
 #include <span>
 #include <string>
 
+#include "wingbeat/files/two_sides_file.hpp"
 #include "wingbeat/flight/fly.hpp"
-#include "wingbeat/vehicle/design.hpp"
 
 namespace wingbeat {
 
+/// With the designs of either side, where they differ. Throws ParameterError as of a design.
+FlightVehicle flight_vehicle(const VehicleFile& file);
+
 struct FlightFile {
   std::string title;
-  Design<double> design;
-  FlightVehicle vehicle;
+  VehicleFile source;
+  FlightVehicle vehicle;  ///< flight_vehicle(source)
   FlightPlan plan;
 };
 

@@ -17,6 +17,10 @@
 
 namespace wingbeat {
 
+/// What is said of such files where both sides must be alike.
+inline constexpr const char* sides_refused =
+    "this takes no vehicle whose sides differ; wingbeat run, linearise, trim, stability and fly do";
+
 struct VehicleFile {
   Design<double> design;          ///< of both sides alike; where they differ, without what is of one side
   std::optional<TwoSides> sides;  ///< where they differ
