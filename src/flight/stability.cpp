@@ -39,6 +39,33 @@ FlightVector steps_of(const AveragedFlight& flight, const TrimResult& steady) {
   return steps;
 }
 
+/// `loads`, of the state `from`, with what the air does to body, tail and fin in the state `to`.
+BodyLoads with_plates_moved(const Body& body, BodyLoads loads, const FlightVector& from, const FlightVector& to) {
+  const auto plates = [&](const FlightVector& x) {
+    const SteadyMotion motion = motion_of(body_of(x));
+    return plate_loads(body, motion.velocity, motion.rates);
+  };
+  const BodyLoads before = plates(from), after = plates(to);
+  for (std::size_t n = 0; n < 3; ++n) {
+    loads.force[n] += after.force[n] - before.force[n];
+    loads.moment[n] += after.moment[n] - before.moment[n];
+  }
+  return loads;
+}
+
+/// d/dx_k of the rates by what the air does to body, tail and fin. Drag is kinked about rest, where its slope is 0, but
+/// not that of a difference over the wings' step.
+FlightVector slope_by_plates(const Body& body, const FlightVector& x, const BodyLoads& loads, Eigen::Index k,
+                             double step) {
+  const double small = 1e-6 * step;
+  const auto rates = [&](double by) {
+    FlightVector moved = x;
+    moved[k] += by;
+    return rates_under(body, x, with_plates_moved(body, loads, x, moved));
+  };
+  return (rates(small) - rates(-small)) / (2.0 * small);
+}
+
 /// Of `among`, those whose distances to `to` sum to the least, one for each; fewer where there are fewer.
 std::vector<Complex> nearest_of(const std::vector<Complex>& to, const std::vector<Complex>& among) {
   std::vector<Complex> best;
@@ -139,7 +166,7 @@ std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const Tri
   const auto rates_at = [&](const FlightVector& x, const FlightControls& controls) -> std::optional<FlightVector> {
     const std::optional<MeanFlight> mean = flight.at(controls, motion_of(body_of(x)));
     if (!mean) return std::nullopt;
-    return rates_under(body, x, mean->loads);
+    return rates_under(body, x, with_plates_moved(body, mean->loads, x, trimmed));
   };
   for (Eigen::Index k = 0; k < 8; ++k) {
     FlightVector above = trimmed, below = trimmed;
@@ -153,6 +180,7 @@ std::optional<FlightLinearModel> linear_flight(AveragedFlight& flight, const Tri
     }
     if (!high || !low) return std::nullopt;
     model.A.col(k) = (*high - *low) / (2.0 * steps[k]);
+    if (k < 6) model.A.col(k) += slope_by_plates(body, trimmed, steady.flight->loads, k, steps[k]);
   }
   for (std::size_t k = 0; k < flight_control_count; ++k) {
     if (flight.vehicle().ranges[k].given()) model.controls.push_back(FlightControl(k));

@@ -171,6 +171,33 @@ TEST(Stability, TheLinearModelIsThatOfTheAveragedFlight) {
   EXPECT_NEAR(model->A(0, 7), -standard_gravity * std::cos(hover.pitch), 1e-5);
 }
 
+TEST(Stability, DragOfTheBodyHasNoSlopeAtRestAndItsOwnInFlight) {
+  Design<double> bare = flying_design("friction2022"), dragging = bare;
+  dragging.body.drag_area_forward = dragging.body.drag_area_sideways = dragging.body.drag_area_vertical = 1e-3;
+  dragging.body.tail.area = 1e-3, dragging.body.tail.behind = 0.05;
+  const auto model_of = [](const Design<double>& design, double speed) {
+    AveragedFlight flight(flight_vehicle(design));
+    const TrimResult steady = trim(flight, {.speed = speed});
+    return linear_flight(flight, steady).value();
+  };
+  const FlightMatrix difference = model_of(dragging, 0.0).A - model_of(bare, 0.0).A;
+  EXPECT_LT(difference.cwiseAbs().maxCoeff(), 1e-5);  // 1.8 over the wings' steps
+
+  // In flight the force is smooth: over any step.
+  AveragedFlight flight(flight_vehicle(dragging));
+  const TrimResult steady = trim(flight, {.speed = 0.5});
+  const FlightLinearModel model = linear_flight(flight, steady).value();
+  const BodyState body = steady_body({.speed = 0.5}, steady.roll, steady.pitch);
+  const auto surge = [&](double u) {
+    BodyState moved = body;
+    moved.velocity[0] += u;
+    return mean_acceleration(flight.vehicle().body, moved, flight.at(steady.controls, motion_of(moved))->loads)
+        .linear[0];
+  };
+  const double h = 0.02, coarse = (surge(h) - surge(-h)) / (2.0 * h), fine = (surge(0.5 * h) - surge(-0.5 * h)) / h;
+  EXPECT_NEAR(model.A(0, 0), (4.0 * fine - coarse) / 3.0, 1e-5 * std::abs(coarse));
+}
+
 TEST(Stability, WindActsAsTheMotionThroughTheAirDoes) {
   AveragedFlight flight(flying("friction2022"));
   const TrimResult turn = trim(flight, {.speed = 0.3, .turn_rate = 0.5});

@@ -67,8 +67,11 @@ TEST(RandomFlights, AreInTrimAsTheSimulationHasIt) {
 TEST(RandomFlights, LinearModelsAreDifferencesOfTheSimulation) {
   std::mt19937_64 random(20786);
   for (int n = 0; n < 2; ++n) {
-    const Design<double> d = random_flyer("friction2022", random);
-    AveragedFlight flight(flight_vehicle(d));
+    Design<double> d = random_flyer("friction2022", random);
+    // Drag of the body about rest has a slope over a step that it does not have at rest.
+    d.body.drag_area_forward = 0.0;
+    d.body.tail = {}, d.body.fin = {};
+    AveragedFlight flight(flight_vehicle(d), {.tolerance = 1e-11});
     const TrimResult t = trim(flight, {});
     ASSERT_TRUE(t.flight) << n;
     const std::optional<FlightLinearModel> model = linear_flight(flight, t);
@@ -112,7 +115,7 @@ TEST(RandomFlights, LinearModelsAreDifferencesOfTheSimulation) {
       const MeanAcceleration high = settled(axis, step), low = settled(axis, -step);
       const auto column = model->A.col(Eigen::Index(axis));
       const double size = column.head<3>().cwiseAbs().maxCoeff();
-      EXPECT_NEAR((high.linear[axis] - low.linear[axis]) / (2.0 * step), column[Eigen::Index(axis)], 1e-5 * size) << n;
+      EXPECT_NEAR((high.linear[axis] - low.linear[axis]) / (2.0 * step), column[Eigen::Index(axis)], 1e-6 * size) << n;
     }
   }
 }
