@@ -265,7 +265,7 @@ void add_compare_loads(CLI::App& program, Action& action) {
       ->add_option("--loads-frequency", a->loads_frequency,
                    "Frequency of the simulated motion, as \"22 Hz\" (default: that of the file, or of the vehicle)")
       ->type_name("QUANTITY");
-  command->add_option("--skip-cycles", a->skip_cycles, "Leave so many first cycles out, where the wake is growing")
+  command->add_option("--skip-cycles", a->skip_cycles, "Omit this many first cycles, in which the wake is growing")
       ->check(CLI::Range(0.0, 1e6))
       ->type_name("NUMBER");
   add_json(command, a->json);

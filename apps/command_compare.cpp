@@ -62,7 +62,7 @@ int run(const CompareArguments& arguments) {
 }  // namespace
 
 void add_compare(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("compare", "Compute published values and show ours beside them");
+  CLI::App* command = program.add_subcommand("compare", "Compare published values with those of the program");
   const auto a = std::make_shared<CompareArguments>();
   add_input(command, a->file, InputKind::published, "file", "File of published values (TOML)", "FILE");
   add_set(command, a->overrides);

@@ -71,7 +71,7 @@ int run(const EnduranceArguments& arguments) {
 }  // namespace
 
 void add_endurance(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("endurance", "How long a vehicle hovers and flaps on its battery");
+  CLI::App* command = program.add_subcommand("endurance", "Find how long a vehicle hovers and flaps on its battery");
   const auto a = std::make_shared<EnduranceArguments>();
   command->add_flag("--hover", a->hover,
                     "Fly at the throttle that just carries the weight, as supply.throttle = \"hover\"");

@@ -147,8 +147,8 @@ void add_trim(CLI::App& program, Action& action) {
   command->footer(
       "Example:\n  wingbeat trim flight-x-wing --to \"2 m/s\" --plot trim.svg\n\n"
       "Finds voltage, attitude and controls at which the mean accelerations over a wingbeat vanish, the drives\n"
-      "settled to their cycles under the motion of the body. A vehicle without a control for an axis flies where the\n"
-      "moment about it vanishes by itself, else the report says what remains. Needs [body] in the vehicle file.\n\n"
+      "settled to their cycles under the motion of the body. A vehicle without a control for an axis is in trim only\n"
+      "if the moment about it vanishes; otherwise the report states what remains. Needs [body] in the vehicle file.\n\n"
       "Exit status: 0 done, 2 bad input or usage, 3 not in trim at any speed, 1 anything else.");
   act(command, action, a, run_trim);
 }

@@ -66,7 +66,7 @@ int run(const FlyArguments& a) {
 }  // namespace
 
 void add_fly(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("fly", "Fly by a controller, with noise, delay, wind and gusts");
+  CLI::App* command = program.add_subcommand("fly", "Simulate flight with a controller, noise, delay, wind and gusts");
   const auto a = std::make_shared<FlyArguments>();
   add_input(command, a->flight, InputKind::study, "flight", "Flight file (TOML): vehicle, controller, path, wind",
             "FLIGHT");
@@ -79,7 +79,7 @@ void add_fly(CLI::App& program, Action& action) {
   command->footer(
       "Example:\n  wingbeat fly fly-hover -o flight.nc --plot flight.svg\n\n"
       "The controller, a linear-quadratic regulator or a cascade of PID loops, is designed from the linear model\n"
-      "about the trim that the flight starts from. docs/flight-fly.md says what a flight file holds. The flight ends\n"
+      "about the trim that the flight starts from. docs/flight-fly.md describes flight files. The flight ends\n"
       "early where the vehicle hits the ground, tips over, flies too far away, jams or has emptied its battery.\n\n"
       "Exit status: 0 flown to the end, 2 bad input or usage, 3 the flight ends early or there is no trim,\n"
       "1 anything else.");

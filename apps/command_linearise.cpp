@@ -109,7 +109,7 @@ void add_linearise(CLI::App& program, Action& action) {
       "Example:\n"
       "  wingbeat linearise friction2022 --frequency \"22 Hz\" -o model.mat --plot steps.svg\n\n"
       "The cycle-to-cycle model x' = A x + B u, y = C x + D u is exact to first order (dual numbers); docs/control.md\n"
-      "says what states, inputs, outputs, maps and body axes are.\n\n"
+      "defines states, inputs, outputs, maps and body axes.\n\n"
       "Exit status: 0 done, 2 bad input or usage, 3 the vehicle does not flap, 1 anything else.");
   act_at_operating_point(command, action, a, run);
 }

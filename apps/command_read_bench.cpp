@@ -34,15 +34,15 @@ std::vector<BenchReading> readings_of(const std::string& file) {
 }  // namespace
 
 void add_read_bench(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("read-bench", "Show what logs of a test bench are understood as");
+  CLI::App* command = program.add_subcommand("read-bench", "Show how the program reads logs of a test bench");
   const auto a = std::make_shared<ReadBenchArguments>();
   add_input(command, a->file, InputKind::bench, "file", "A log (CSV), or a bench file (TOML) with its logs", "FILE");
   add_json(command, a->json);
   command->footer(
       "Example:\n  wingbeat read-bench flapper\n\n"
-      "Cells may stand between commas, semicolons or tabs, with a decimal point or comma, in the order that the bench\n"
-      "went through; names and units in use at benches are known (current_mA, Lift (g), rpm). Where two readings are\n"
-      "possible nothing is guessed: the sentence says which key of [[log]] decides.\n\n"
+      "Logs may have commas, semicolons or tabs between cells, a decimal point or comma, rows in any order, and\n"
+      "common names and units (current_mA, Lift (g), rpm). If a file has two possible meanings, the message names\n"
+      "the key of [[log]] that decides.\n\n"
       "Exit status: 0 read, 2 bad input or a question.");
   command->callback([a, &action] {
     action = [a] {

@@ -158,8 +158,8 @@ void add_run(CLI::App& program, Action& action) {
       ->type_name("NUMBER");
   add_allow_extrapolation(command, a->operating_point);
   command->add_flag("--endurance", a->endurance,
-                    "How long it hovers and flaps on its battery, too (docs/endurance.md): takes some fifty times as "
-                    "long");
+                    "Also find how long it hovers and flaps on its battery (docs/endurance.md): takes about fifty "
+                    "times as long");
   add_json(command, a->json);
   add_file(command, "--waveforms", a->waveforms, ".csv .nc", "Write one cycle to FILE.csv or FILE.nc");
   add_file(command, "--plot", a->plot, plot_extensions, "Plot one cycle to FILE.svg, .pdf or .png");
@@ -172,8 +172,8 @@ void add_run(CLI::App& program, Action& action) {
       "  wingbeat run friction2022 --frequency \"22 Hz\" \\\n"
       "    --set friction.radius=\"2 mm\" --plot cycle.svg\n\n"
       "--frequency finds the voltage for a flapping frequency, --lift the lowest one for a mean lift. Both keep\n"
-      "to the domain of validity (angles of attack from 0 to 90 deg and more) unless --allow-extrapolation; a\n"
-      "refusal says how far it reaches. With a pwm supply the orbit and the searches see the mean voltage;\n"
+      "to the domain of validity (angles of attack from 0 to 90 deg and more) unless --allow-extrapolation;\n"
+      "otherwise the message states the limit. With a pwm supply the orbit and the searches use the mean voltage;\n"
       "--frequency changes its voltage, --lift its duty; on a battery both find the duty. A direct drive takes\n"
       "--frequency as that of its sine and --lift by its amplitude; a crank on a sine needs --method transient,\n"
       "which also reports the start-up.\n\n"

@@ -55,19 +55,19 @@ void add_scale(CLI::App& program, Action& action) {
   const auto a = std::make_shared<ScaleArguments>();
   add_input(command, a->vehicle, InputKind::vehicle, "vehicle", "Vehicle file (TOML)", "VEHICLE");
   add_set(command, a->overrides);
-  CLI::Option* wing = command->add_option("--wing", a->wing, "Wings so many times as large; the drive stays");
+  CLI::Option* wing = command->add_option("--wing", a->wing, "Factor of the size of the wings; the drive is kept");
   wing->type_name("FACTOR");
-  command->add_option("--vehicle", a->whole, "Everything so many times as large")->type_name("FACTOR")->excludes(wing);
+  command->add_option("--vehicle", a->whole, "Factor of the size of everything")->type_name("FACTOR")->excludes(wing);
   add_file(command, "-o,--output", a->output, ".toml", "Write the vehicle file", "FILE.toml");
   add_force(*command, a->force);
   add_json(command, a->json);
   command->footer(
       "Example:\n  wingbeat scale friction2022 --wing 1.1 -o larger.toml\n\n"
-      "Lengths grow with the factor; densities, stresses, voltages and speeds stay. Times then grow with it, currents\n"
+      "Lengths grow with the factor; densities, stresses, voltages and speeds do not. Times grow with it, currents\n"
       "with its 2nd power, masses, torques and stiffnesses of hinges with the 3rd, moments of inertia with the 5th.\n"
       "The air keeps its viscosity, so that the Reynolds number changes, and the armature resistance of a motor wound\n"
       "for the same voltage grows with the -3rd power: small motors lose more. --wing changes outline, masses and\n"
-      "moments of the wings alone. Comments and units of the file stay.\n\n"
+      "moments of the wings alone. Comments and units of the file are kept.\n\n"
       "Exit status: 0 done, 2 bad input or usage.");
   command->callback([a, &action] {
     action = [a] {

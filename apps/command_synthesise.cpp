@@ -145,17 +145,15 @@ void add_synthesise(CLI::App& program, Action& action) {
       ->type_name("LENGTH");
   command
       ->add_option("--stroke-ratio", a->stroke_ratio,
-                   "Wings turn so many times the rocker's angle, by a gear pair or string (default 1)")
+                   "Angle of the wings over that of the rocker, by a gear pair or string (default 1)")
       ->type_name("RATIO");
   command
-      ->add_option("--time-ratio", a->time_ratio,
-                   "The longer half-stroke takes at most so many times the shorter (default 1)")
+      ->add_option("--time-ratio", a->time_ratio, "Largest ratio of the longer half-stroke to the shorter (default 1)")
       ->type_name("RATIO");
   command
-      ->add_option("--transmission-angle", a->transmission_angle,
-                   "Refuse where the least transmission angle is smaller (default 5 deg)")
+      ->add_option("--transmission-angle", a->transmission_angle, "Smallest transmission angle allowed (default 5 deg)")
       ->type_name("ANGLE");
-  command->add_option("--clearance", a->clearance, "Radial play of every joint: what it costs")->type_name("LENGTH");
+  command->add_option("--clearance", a->clearance, "Radial play of every joint: give its effects")->type_name("LENGTH");
   add_input(command, a->vehicle, InputKind::vehicle, "--vehicle",
             "Write this vehicle with the mechanism instead of its own", "VEHICLE")
       ->required(false);
@@ -166,9 +164,9 @@ void add_synthesise(CLI::App& program, Action& action) {
   add_json(command, a->json);
   command->footer(
       "Example:\n  wingbeat synthesise four-bar --stroke \"120 deg\" --envelope \"25 mm\" --stroke-ratio 2\n\n"
-      "Of all four-bars with that stroke, in that room, whose half-strokes are alike as far as asked for, it finds\n"
-      "the one with the largest least transmission angle between coupler and rocker; of slider-cranks the one with\n"
-      "the longest rod. --clearance tells what play in the joints does to stroke and phase.\n\n"
+      "Of all four-bars with this stroke, envelope and ratio of the half-strokes, it finds the one with the largest\n"
+      "minimum of the transmission angle between coupler and rocker; of slider-cranks the one with the longest\n"
+      "rod. --clearance gives the effect of play in the joints on stroke and phase.\n\n"
       "Exit status: 0 done, 2 bad input or usage, or no such mechanism.");
   command->callback([a, &action] {
     action = [a] {

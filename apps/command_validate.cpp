@@ -86,8 +86,8 @@ void add_validate(CLI::App& program, Action& action) {
   add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat validate gammabot-thrust\n\n"
-      "Each set is computed with nothing fitted, with one parameter fitted and with those that a fit may touch.\n"
-      "A rule in the file says which rows a fit may see; the others are predicted.\n\n"
+      "Each set is computed with nothing fitted, with one parameter fitted, and with all that a fit may change.\n"
+      "A rule in the file chooses the rows for fits; the others are predicted.\n\n"
       "Exit status: 0 done, 1 something failed, 2 bad input or usage.");
   command->callback([a, &action] { action = [a] { return run(*a); }; });
 }

@@ -133,7 +133,7 @@ void add_json(CLI::App* command, bool& json) {
 }
 
 void add_threads(CLI::App* command, int& threads) {
-  command->add_option("--threads", threads, "Use at most so many threads (default: one for each core)")
+  command->add_option("--threads", threads, "Use at most N threads (default: one for each core)")
       ->type_name("N")
       ->check(CLI::Validator(
           [](std::string& text) -> std::string {

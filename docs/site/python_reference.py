@@ -6,9 +6,9 @@ import re
 # What belongs together; names of the package that are in no group get a page of their own.
 groups = [
     ("vehicles", "Vehicles and quantities",
-     "What a vehicle file holds: read it, look at its keys, change them.",
+     "Vehicle files: read them, look at their keys, change them.",
      ["read", "shipped", "Vehicle", "Section", "Quantity", "parameters", "Parameter", "InputError"]),
-    ("runs", "One vehicle", "Steady flapping, start-up, and what comes of them.",
+    ("runs", "One vehicle", "Steady flapping, start-up, and their results.",
      ["solve", "RunResult", "EnergyBalance", "metrics", "Metric", "simulate", "StartUp", "Event"]),
     ("ensembles", "Many vehicles", "Arrays of designs and sweeps over their keys.",
      ["solve_columns", "Ensemble", "sweep", "SweepData", "open_dataset"]),

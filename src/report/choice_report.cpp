@@ -76,7 +76,7 @@ std::string text_choices(const ToleranceStudy& study, const ToleranceResult& res
   const auto out = std::back_inserter(text);
   for (std::size_t k = 0; k < study.choices.size(); ++k) {
     const ModelChoice& choice = study.choices[k];
-    fmt::format_to(out, "\nWhat the choice of {} is worth\n  {:<46}{:>12}{:>12}{}\n", choice.name, "", "samples",
+    fmt::format_to(out, "\nEffect of the choice of {}\n  {:<46}{:>12}{:>12}{}\n", choice.name, "", "samples",
                    "flapping", result.hover ? "    hovers (95 %)" : "");
     for (std::size_t a = 0; a < choice.alternatives.size(); ++a) {
       const AlternativeSamples& samples = result.choices[k][a];
@@ -174,7 +174,7 @@ const Description<ChoiceFound>& choice_description() {
                    return all;
                  })
           .always(
-              "outputs", "", "by metric: what the choice is worth",
+              "outputs", "", "by metric: effect of the choice",
               [](const R& r) {
                 Json all = Json::object();
                 for (const ToleranceOutput& o : r.result.outputs) {

@@ -70,7 +70,7 @@ std::string describe(LoadQuantity quantity, const LoadDisagreement& d) {
   if (std::isfinite(d.ratio) && std::abs(d.mean_simulated) > small_mean * d.rms_simulated) {
     text = fmt::format("The model's mean {} is {:.3g} times the simulated one. ", name, d.ratio);
   } else {
-    text = fmt::format("The mean {} is near zero beside its variation, so that the ratio of the means says little. ",
+    text = fmt::format("The mean {} is near zero beside its variation, so that the ratio of the means means little. ",
                        name);
   }
   if (!std::isfinite(d.correlation)) return text + "One of the two is constant over the cycle.";

@@ -128,12 +128,12 @@ constexpr MetricDefinition metric_definitions[] = {
     {Metric::power_motor, R"($P_\mathrm{m}$)",
      R"(mean of $T_\mathrm{m} \omega$ (eq 16), behind gearbox and friction of the motor)"},
     {Metric::power_motor_reference, R"($P_\mathrm{m,ref}$)",
-     R"($2 \pi f K_\mathrm{ref} \overline{i}$ (eq 17): what a test bench would say, `bench.torque_constant` given)"},
+     R"($2 \pi f K_\mathrm{ref} \overline{i}$ (eq 17): estimate of a test bench, `bench.torque_constant` given)"},
     {Metric::power_friction, R"($P_\mathrm{friction}$)",
      R"(mean of $T_\mathrm{f} \omega$ (eq 18), all friction torques of the transmission)"},
     {Metric::power_aerodynamic, R"($P_\mathrm{aero}$)",
      R"(mean of $M_\mathrm{aero} \dot\beta$ (eq 19), of wings on pitch hinges of )"
-     R"($M_\mathrm{aero} \dot\beta + M_\mathrm{pitch} \dot\psi$: all that the air takes)"},
+     R"($M_\mathrm{aero} \dot\beta + M_\mathrm{pitch} \dot\psi$, the whole power into the air)"},
     {Metric::power_reactive, R"($P_\mathrm{re}$)",
      R"(mean of $\lvert (N_\mathrm{w} J_\mathrm{w} \ddot\beta + N_\mathrm{w} k \beta)\, \dot\beta \rvert$ (eq 23))"},
     {Metric::power_copper, R"($P_\mathrm{cu}$)", R"($R_\mathrm{a} \overline{i^2}$)"},
@@ -143,15 +143,15 @@ constexpr MetricDefinition metric_definitions[] = {
     {Metric::power_gear, R"($P_\mathrm{gear}$)",
      R"(mean of $(1 - e)\, T_\mathrm{g} \omega$, 0 unless `motor.gear_efficiency` is below 1)"},
     {Metric::power_electronics, R"($P_\mathrm{esc}$)",
-     R"($(1/\eta_\mathrm{esc} - 1)\, \overline{v i}$ of a brushless motor; of a piezo what its dielectric and the )"
-     "electronics lose of the energy that its capacitance gives back"},
+     R"($(1/\eta_\mathrm{esc} - 1)\, \overline{v i}$ of a brushless motor; of a piezo the loss of its dielectric and )"
+     "of the electronics on the energy that its capacitance gives back"},
     {Metric::power_loss, R"($P_\mathrm{loss}$)", R"($P_\mathrm{e} - P_\mathrm{aero}$ (eq 20))"},
     {Metric::power_residual, R"($P_\mathrm{residual}$)",
      R"(mean of $F (h \omega - g \dot\beta)$: 0 with `virtual-work`, a property of `rod-force`)"},
     {Metric::lift_mean, R"($\overline{L}$)", "mean lift of all wings, normal to the stroke plane (eq 2)"},
     {Metric::lift_peak, R"($\max L$)", ""},
     {Metric::rod_force_peak, R"($\max \lvert F \rvert$)",
-     "largest magnitude of the rod force (of a four-bar, the coupler force); absent of a direct drive"},
+     "largest magnitude of the rod force (of a four-bar, the coupler force); not for a direct drive"},
     {Metric::rod_force_mean, R"($\overline{\lvert F \rvert}$)", ""},
     {Metric::stroke_amplitude, R"($\tfrac12 (\beta_\mathrm{max} - \beta_\mathrm{min})$)", ""},
     {Metric::flapping_velocity_peak, R"($\max \lvert \dot\beta \rvert$)", "of a wing about its hinge"},
@@ -164,7 +164,7 @@ constexpr MetricDefinition metric_definitions[] = {
     {Metric::efficiency_motor, R"($\eta_\mathrm{m}$)", R"($P_\mathrm{m} / P_\mathrm{e}$ (eq 25))"},
     {Metric::efficiency_mechanism, R"($\eta_\mathrm{t}$)", R"($P_\mathrm{aero} / P_\mathrm{m}$ (eq 26))"},
     {Metric::floquet_multiplier_max, R"($\max \lvert \mu_\mathrm{F} \rvert$)",
-     "by how much a small disturbance grows in a cycle: below 1 the orbit is stable"},
+     "growth of a small disturbance in a cycle: below 1 the orbit is stable"},
     {Metric::lift_to_weight, R"($\overline{L} / (m g)$)", "1 hovers; `vehicle.mass` given"},
     {Metric::winding_temperature, R"($T_\mathrm{w}$)", "at which the winding settles; thermal resistances given"},
     {Metric::case_temperature, R"($T_\mathrm{case}$)", "at which the motor's case settles"},
@@ -173,11 +173,11 @@ constexpr MetricDefinition metric_definitions[] = {
     {Metric::added_mass_inertia_ratio, R"($J_\mathrm{a} / (N_\mathrm{w} J_\mathrm{w})$)",
      "`aerodynamics.added_mass = true`"},
     {Metric::power_hinge, R"($P_\mathrm{hinge}$)",
-     R"(mean of $c_\psi \dot\psi^2 + T_\psi |\dot\psi| + c_\tau \dot\tau^2$ of all wings and what the stops take in )"
+     R"(mean of $c_\psi \dot\psi^2 + T_\psi |\dot\psi| + c_\tau \dot\tau^2$ of all wings, and the loss at stops in )"
      "impacts; wings that pitch on hinges or twist"},
     {Metric::pitch_amplitude, R"($\tfrac12 (\psi_\mathrm{max} - \psi_\mathrm{min})$)", ""},
     {Metric::pitch_phase, R"($\varphi_\psi$)",
-     R"(by how much the first harmonic of $\psi$ is ahead of that of $-\dot\beta$: 0 for symmetric flips; )"
+     R"(lead of the first harmonic of $\psi$ over that of $-\dot\beta$: 0 for symmetric flips; )"
      "wings that pitch by 1e-4 rad at least"},
     {Metric::angle_of_attack_max, R"($\alpha_\mathrm{max}$)",
      "of wings on pitch hinges, above 90 degrees at reversals"},

@@ -64,7 +64,7 @@ std::string text_comparison(const PublishedFile& file, const Comparison& compari
     const std::string which = detail::spaced(p.design) + (p.relative_to ? " / " + detail::spaced(*p.relative_to) : "") +
                               (p.change ? ", change" : "");
     if (here != point) {
-      fmt::format_to(out, "\n{:<37}{:>11}{:>12}{:>12}{:>12}\n", "At " + here, "published", "ours", "deviation",
+      fmt::format_to(out, "\n{:<37}{:>11}{:>12}{:>12}{:>12}\n", "At " + here, "published", "computed", "deviation",
                      "tolerance");
       design.clear();
     }

@@ -63,7 +63,7 @@ void take_losses(const MotorDatasheet& s, const MotorFit& fit, MotorIdentificati
     }
     if (!fit.both && fit.one && !s.friction_torque) {
       result.remarks.push_back(
-          "the sheet cannot tell constant from viscous friction: all of the loss is taken as viscous "
+          "the sheet does not separate constant from viscous friction: all of the loss is taken as viscous "
           "damping");
     }
     if (fit.only_constant || (!fit.both && s.friction_torque)) {
@@ -177,7 +177,7 @@ void remark_on_misfits(const std::vector<Datum>& data, MotorIdentification& resu
   }
   if (result.birge_ratio > 1.05) {
     result.remarks.push_back(
-        format("the sheet's values scatter %.3g times as widely as their deviations say: the standard "
+        format("the sheet's values scatter %.3g times as widely as their deviations allow: the standard "
                "errors are that much larger (Birge ratio)",
                result.birge_ratio));
   }

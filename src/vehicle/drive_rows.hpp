@@ -29,13 +29,13 @@ constexpr auto drive_rows() {
                  "kg",
                  range::positive,
                  "unknown",
-                 "mass of the vehicle but for the masses stated for themselves (motor.mass, supply.mass, "
+                 "mass of the vehicle without the masses stated separately (motor.mass, supply.mass, "
                  "supply.specific_energy, spring.mass, transmission.rod_linear_density); enables lift_to_weight",
                  {},
                  "3.34 g"},
                 [](auto& d) -> auto& { return d.mass; }),
       number<S>({"vehicle.motors", "1", range::count, "1",
-                 "M, number of motors on the supply, each with a transmission and wings of its own as below, in phase"},
+                 "M, number of motors on the supply, each with its own transmission and wings, in phase"},
                 [](auto& d) -> auto& { return d.motors; }),
 
       choice<S, SupplyChoice>("what feeds the motor terminals"),
@@ -58,7 +58,7 @@ constexpr auto drive_rows() {
                               {"frequency"}},
                              drive_ratio),
       number<S, Switched>(row(supply_key::duty, "1",
-                              "D, fraction of a period switched on; required of pwm, on a battery the speed control's"),
+                              "D, fraction of a period switched on; required for pwm, else of the speed control"),
                           [](auto& d) -> auto& { return d.supply.duty; }),
       text<S, OnBattery>(
           {"supply.throttle",
@@ -82,14 +82,13 @@ constexpr auto drive_rows() {
                            "open-circuit voltage of one cell: rows [state of charge, voltage], monotone cubics, see "
                            "below",
                            {"cell_voltage"}}),
-      number<S, OnBattery>(row(battery_key::internal_resistance, "required",
-                               "R_i of one cell: the terminals see E - R_i i, times cells"),
-                           [](auto& d) -> auto& { return d.supply.battery.internal_resistance; }),
+      number<S, OnBattery>(
+          row(battery_key::internal_resistance, "required", "R_i of one cell: terminal voltage E - R_i i, times cells"),
+          [](auto& d) -> auto& { return d.supply.battery.internal_resistance; }),
       number<S, OnBattery>(row(battery_key::capacity, "required", "charge that a full cell holds"),
                            [](auto& d) -> auto& { return d.supply.battery.capacity; }),
-      number<S, OnBattery>(
-          row(battery_key::charge, "1", "state of charge: where a run computes, where a flight starts"),
-          [](auto& d) -> auto& { return d.supply.battery.charge; }),
+      number<S, OnBattery>(row(battery_key::charge, "1", "state of charge of a run, and at the start of a flight"),
+                           [](auto& d) -> auto& { return d.supply.battery.charge; }),
       number<S, OnBattery>(
           row(battery_key::cutoff_voltage, "none", "mean terminal voltage of one cell at which a flight ends"),
           [](auto& d) -> auto& { return d.supply.battery.cutoff_voltage; }),
@@ -108,7 +107,7 @@ constexpr auto drive_rows() {
                               supply_mass, specific_energy),
 
       number<S, Motorised>({"motor.gear_ratio", "1", range::positive, "none: constants at the output shaft",
-                            "n, motor turns per output turn; given, the motor constants below are the motor shaft's"},
+                            "n, motor turns per output turn; with it the constants below hold at the motor shaft"},
                            [](auto& d) -> auto& { return d.motor.gear_ratio; }),
       number<S, Geared>({"motor.gear_inertia", "kg m2", range::not_negative, "0 kg m2",
                          "J_G, inertia of the gearbox at the output shaft"},
@@ -164,7 +163,7 @@ constexpr auto drive_rows() {
 
       number<S, Motorised>(
           row(motor_thermal_key::resistance_winding, "none: constants the same at any load",
-              "R_th1, thermal resistance from winding to case; given, the constants follow the temperatures"),
+              "R_th1, thermal resistance from winding to case; with it the constants depend on temperature"),
           [](auto& d) -> auto& { return d.motor.thermal.resistance_winding; }),
       number<S, Heated>(
           row(motor_thermal_key::resistance_case, "required", "R_th2, thermal resistance from case to air"),
@@ -180,11 +179,10 @@ constexpr auto drive_rows() {
       number<S, Heated>(row(motor_thermal_key::magnet_temperature_coefficient, "0 1/K",
                             "a_B: K falls as 1 + a_B (T_case - T_0), about -0.001 1/K of NdFeB"),
                         [](auto& d) -> auto& { return d.motor.thermal.magnet_temperature_coefficient; }),
-      number<S, Heated>(
-          row(motor_thermal_key::winding_temperature_max, "398.15 K",
-              "largest temperature allowed to the winding, of its data sheet: beyond, a result is outside "
-              "the domain; 125 degC unless given"),
-          [](auto& d) -> auto& { return d.motor.thermal.winding_temperature_max; }),
+      number<S, Heated>(row(motor_thermal_key::winding_temperature_max, "398.15 K",
+                            "largest winding temperature, from the data sheet: above it a result is outside "
+                            "the domain; 125 degC unless given"),
+                        [](auto& d) -> auto& { return d.motor.thermal.winding_temperature_max; }),
       number<S, Heated>(row(motor_thermal_key::time_constant_winding, "none",
                             "tau_w, of the winding over the case, for `wingbeat endurance`"),
                         [](auto& d) -> auto& { return d.motor.thermal.time_constant_winding; }),
@@ -209,14 +207,13 @@ constexpr auto drive_rows() {
                            return std::string(d.electronics.regenerates ? "true" : "false");
                          }),
 
-      Parameter<S>{
-          row(piezo_key::force_per_volt, "none: a motor",
-              "kappa of a piezo bimorph that swings the wings in the place of a motor: force at its tip per volt"),
-          [](Design<S>& d, const S& x) {
-            d.piezo.force_per_volt = d.piezo.constants.force_per_volt = x;
-            return true;
-          },
-          [](const Design<S>& d) -> std::optional<S> { return d.piezo.force_per_volt; }},
+      Parameter<S>{row(piezo_key::force_per_volt, "none: a motor",
+                       "kappa of a piezo bimorph that replaces the motor: force at its tip per volt"),
+                   [](Design<S>& d, const S& x) {
+                     d.piezo.force_per_volt = d.piezo.constants.force_per_volt = x;
+                     return true;
+                   },
+                   [](const Design<S>& d) -> std::optional<S> { return d.piezo.force_per_volt; }},
       number<S, PiezoDriven>(
           row(piezo_key::voltage_factor, "0 1/V", "kappa_1: the force grows as kappa (1 + kappa_1 abs(V)) V"),
           [](auto& d) -> auto& { return d.piezo.constants.voltage_factor; }),

@@ -116,7 +116,7 @@ constexpr auto wing_rows() {
           [](auto& d) -> auto& { return d.transmission.table.scale; }),
       number<S, WhereTaken<stroke_table_key::reference_radius>>(
           row(stroke_table_key::reference_radius, "required",
-              "r_ref, radius at which the wings' moment is taken up: load-proportional friction acts on "
+              "r_ref, radius at which the moment of the wings acts: load-proportional friction acts on "
               "that moment over r_ref",
               {}, "6 mm"),
           [](auto& d) -> auto& { return d.transmission.table.reference_radius; }),
@@ -128,7 +128,7 @@ constexpr auto wing_rows() {
       friction_number<S, FrictionLaw::load_proportional>(row(
           friction_key::radius, "required", "mu r_e, effective friction radius: T_f = mu r_e abs(F)", {}, "2.5 mm")),
       number<S, Direct>(row(direct_drive_key::reference_radius, "none",
-                            "r_ref, radius at which the wings' moment is taken up: load-proportional friction acts on "
+                            "r_ref, radius at which the moment of the wings acts: load-proportional friction acts on "
                             "that moment over r_ref"),
                         [](auto& d) -> auto& { return d.friction.reference_radius; }),
       friction_number<S, FrictionLaw::viscous>(row(friction_key::damping, "required", "b_f: T_f = b_f omega")),
@@ -197,7 +197,7 @@ constexpr auto wing_rows() {
                            "lambda_r, mass of a rib over its length, along the chord from edge to edge"),
                        [](auto& d) -> auto& { return d.wing.rib_density; }),
       number<S, Drawn>(row(wing_material_key::rib_count, "0",
-                           "n_r, ribs of one wing, which part its length into n_r + 1 equal bays"),
+                           "n_r, ribs of one wing, which divide its length into n_r + 1 equal bays"),
                        [](auto& d) -> auto& { return d.wing.rib_count; }),
       number<S, PitchingWing>(
           row(pitch_key::pitch_inertia, "from areal_density",
@@ -270,13 +270,12 @@ constexpr auto wing_rows() {
           stop, stop_low, stop_high),
       placed_alternative<S, Pitching>(
           row(pitch_key::stop_low, "none",
-              "of stops that differ, the lower: psi goes no lower; the trailing edge is behind a wing that swings "
+              "lower stop, if the stops differ: smallest psi; the trailing edge is behind a wing that swings "
               "forward then",
               {"stop"}),
           stop_low, stop),
       placed_alternative<S, Pitching>(
-          row(pitch_key::stop_high, "none", "of stops that differ, the upper: psi goes no higher", {"stop"}), stop_high,
-          stop),
+          row(pitch_key::stop_high, "none", "upper stop, if the stops differ: largest psi", {"stop"}), stop_high, stop),
       number<S, Pitching>(row(pitch_key::friction, "0 N m", "T_psi, constant friction of one hinge's joint"),
                           [](auto& d) -> auto& { return d.pitch.friction; }),
       text<S, Pitching>({"pitch.rotational_lift",
@@ -324,7 +323,7 @@ constexpr auto wing_rows() {
                "that their pitching moves, too; takes no mean power"},
               [](const D& d) { return std::string(d.aerodynamics.added_mass ? "true" : ""); }),
       number<S>(row(wing_limits_key::kinematic_viscosity, "1.5e-5 m2/s",
-                    "nu, kinematic viscosity of the air: it sets the Reynolds number, and no force"),
+                    "nu, kinematic viscosity of the air, for the Reynolds number; no force depends on it"),
                 [](auto& d) -> auto& { return d.aerodynamics.kinematic_viscosity; }),
       number<S>(row(wing_limits_key::reynolds_number_min, "of a named set of coefficients 100, else none",
                     "lowest Reynolds number for which the coefficients hold"),
@@ -337,8 +336,8 @@ constexpr auto wing_rows() {
               "B, part of the distance from hinge to tip that lifts; beyond it the wings have the drag C_D(0) alone"),
           [](auto& d) -> auto& { return d.aerodynamics.lifting_span; }),
       number<S>(row(induced_velocity_key::share, "none",
-                    "share, 0 to 1, of the induced velocity of momentum theory that counts. Coefficients measured on "
-                    "flapping wings hold a wake of their own, so that 1 counts part of it twice"),
+                    "applied share, 0 to 1, of the induced velocity of momentum theory. Coefficients measured on "
+                    "flapping wings include a part of the wake, so that 1 counts this part twice"),
                 [](auto& d) -> auto& { return d.aerodynamics.induced_velocity; }),
       number<S, InducedVelocityGiven>(
           row(induced_velocity_key::swept_area, "that of the stroke",
@@ -427,21 +426,21 @@ constexpr auto wing_rows() {
                                 "velocity, lift, stroke moment, pitch moment]",
                                 {"file"}}),
       alternative<S, LoadsTabulated>(row(load_table_key::air_density, "aerodynamics.air_density",
-                                         "density of the air for which the table holds; loads go with the density"),
+                                         "density of the air for which the table holds; loads are proportional to it"),
                                      [](auto& d) -> auto& { return d.aerodynamics.table_air_density; }),
-      alternative<S, LoadsTabulated>(row(load_table_key::wings, "all", "how many wings the loads of the table are of"),
+      alternative<S, LoadsTabulated>(row(load_table_key::wings, "all", "number of wings for the loads of the table"),
                                      [](auto& d) -> auto& { return d.aerodynamics.table_wings; }),
       number<S>(row(clap_and_fling_key::amplitude, "none",
                     "A: where wings meet at the reversal with the largest stroke angle, all aerodynamic forces are "
-                    "multiplied by 1 + A exp(-s / (lambda c)) on their way apart, s being the way of the 70 % station "
+                    "multiplied by 1 + A exp(-s / (lambda c)) as they part, where s is the path of the 70 % station "
                     "since then and c the mean chord"),
                 [](auto& d) -> auto& { return d.aerodynamics.clap.amplitude; }),
-      number<S, ClapGiven>(row(clap_and_fling_key::decay, "1", "lambda, way over the mean chord on which it decays"),
+      number<S, ClapGiven>(row(clap_and_fling_key::decay, "1", "lambda, length of its decay over the mean chord"),
                            [](auto& d) -> auto& { return d.aerodynamics.clap.decay; }),
       number<S, ClapGiven>(
           row(clap_and_fling_key::gap, "1",
               "g, distance over the mean chord of the 70 % stations of the two wings at the reversal, up "
-              "to which they act on each other"),
+              "to which they interact"),
           [](auto& d) -> auto& { return d.aerodynamics.clap.gap; }),
       number<S, ClapGiven>(row(clap_and_fling_key::meeting_angle, "that of two wings on one body, about 90 deg",
                                "stroke angle at which the two wings touch"),

@@ -181,7 +181,7 @@ TEST_F(Tolerance, ChoicesOfModelInReportDataSetFigureAndJson) {
         "  formulation                       choice, rod-force 75 %, virtual-work 25 %\n",
         "The linear prediction is that of the most likely alternatives, rod-force (formulation),\n"
         "  translational-2022 (coefficients). It has no share for a choice.\n",
-        "What the choice of formulation is worth\n", "What the choice of coefficients is worth\n",
+        "Effect of the choice of formulation\n", "Effect of the choice of coefficients\n",
         "  mean +- deviation                 difference  parameters   translational-2022                  own\n"}) {
     EXPECT_THAT(text.out, HasSubstr(part));
   }

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 class Ensemble:
-    """What became of each design, as arrays in the order of the designs.
+    """Results of all designs, as arrays in the order of the designs.
 
     Metrics are attributes: `result.lift_mean`, NaN where a design does not have one.
 

@@ -40,7 +40,7 @@ def step(
     Parameters
     ----------
     models : ControlModels
-        What `wingbeat.linearise` returns.
+        The result of `wingbeat.linearise`.
     outputs : list of str, optional
         Names of outputs; default: lift, crank speed and electrical power.
     figure : matplotlib Figure, optional
@@ -121,7 +121,7 @@ def bode(
     Parameters
     ----------
     models : ControlModels
-        What `wingbeat.linearise` returns.
+        The result of `wingbeat.linearise`.
     input : str, default 'voltage'
         The name of an input of the model.
     outputs : list of str, optional

@@ -123,7 +123,7 @@ _PARTS = (
 def power_flow(
     results: RunResult | Mapping[str, RunResult], *, ax: Axes | None = None, width: float | str = "89 mm"
 ) -> Axes:
-    """Where the electrical power goes, a bar for each result.
+    """The power balance, a bar for each result.
 
     Parameters
     ----------
@@ -146,7 +146,7 @@ def power_flow(
 
     Notes
     -----
-    What a formulation adds stands left of zero.
+    A negative residual of the formulation is drawn left of zero.
 
     Examples
     --------
@@ -198,7 +198,7 @@ def start_up(start: StartUp, *, figure: Figure | None = None, width: float | str
     Parameters
     ----------
     start : StartUp
-        What `wingbeat.simulate` returns.
+        The result of `wingbeat.simulate`.
     figure : matplotlib Figure, optional
         The Figure or SubFigure to draw into; default: a new one.
     width : float or str, default "89 mm"
@@ -255,7 +255,7 @@ def flight(found: Flight, *, figure: Figure | None = None, width: float | str = 
     Parameters
     ----------
     found : Flight
-        What `wingbeat.endurance` returns.
+        The result of `wingbeat.endurance`.
     figure : matplotlib Figure, optional
         The Figure or SubFigure to draw into; default: a new one.
     width : float or str, default "89 mm"

@@ -31,7 +31,7 @@ def front(
     Parameters
     ----------
     found : Front
-        What `wingbeat.optimise` returns for several objectives.
+        The result of `wingbeat.optimise` for several objectives.
     across, up : str, optional
         Metrics along the axes; default: the first two objectives.
     ax : matplotlib Axes, optional
@@ -102,7 +102,7 @@ def residuals(found: Found, *, figure: Figure | None = None, width: float | str 
     Parameters
     ----------
     found : Found
-        What `wingbeat.fit` returns.
+        The result of `wingbeat.fit`.
     figure : matplotlib Figure, optional
         The Figure or SubFigure to draw into; default: a new one.
     width : float or str, default "89 mm"
@@ -176,7 +176,7 @@ def tolerance(
     Parameters
     ----------
     found : StudyResult
-        What `wingbeat.tolerance` returns.
+        The result of `wingbeat.tolerance`.
     metrics : list of str, optional
         Names of metrics; default: frequency, power, lift, stroke amplitude and efficiency, those that scatter.
     ax : matplotlib Axes, optional
@@ -240,7 +240,7 @@ def sensitivity(
     Parameters
     ----------
     found : StudyResult
-        What `wingbeat.tolerance` returns.
+        The result of `wingbeat.tolerance`.
     metric : str
         The name of a metric.
     ax : matplotlib Axes, optional

@@ -70,7 +70,7 @@ def fit(
         frame, "condition": "vacuum"}` with the keys of `[[log]]` in bench files. A dict of the tables of a bench file
         is taken as well.
     parameters : dict or list of dict, optional
-        What is fitted, with its bounds: `{"friction.radius": ("0 mm", "8 mm")}`, SI numbers or texts with a unit; a
+        The fitted keys with their bounds: `{"friction.radius": ("0 mm", "8 mm")}`, SI numbers or texts with a unit; a
         third value is the start, in place of the vehicle's. A list holds tables `[[parameter]]` of bench files.
         Needed unless `data` are the tables of a bench file.
     deviation : float, str or dict, optional

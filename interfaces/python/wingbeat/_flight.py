@@ -97,7 +97,7 @@ class BodyState(NamedTuple):
 
 
 class FlightLoads(NamedTuple):
-    """What the air does to wings, body and plates, about the centre of mass, in body axes.
+    """Loads of the air on wings, body and plates, about the centre of mass, in body axes.
 
     Examples
     --------
@@ -157,7 +157,7 @@ class FlightSimulation:
     -----
     It begins upright at the origin with the drives at rest, under the vehicle's stated voltage; `start` begins
     elsewhere, for example in trim. A flight has one user at a time: another thread, or a function of the wind, must not
-    step it meanwhile. `copy.copy` makes one that goes its own way, and so serves to go back to a moment.
+    step it meanwhile. `copy.copy` makes an independent one, for example to go back to a moment.
 
     Examples
     --------
@@ -213,7 +213,7 @@ class FlightSimulation:
 
     @property
     def wind(self) -> Any:
-        """What `blow` was given; None: still air."""
+        """The wind given to `blow`; None: still air."""
         return self._wind
 
     @property
@@ -227,7 +227,7 @@ class FlightSimulation:
 
     @property
     def loads(self) -> FlightLoads:
-        """What the air does to the vehicle now."""
+        """Loads of the air on the vehicle now."""
         numbers = self._flight.loads()
         return FlightLoads(numbers[:3], numbers[3:])
 
@@ -374,8 +374,8 @@ class FlightSimulation:
 
         Notes
         -----
-        Other Python threads run meanwhile. What a function of the wind raises, and Ctrl-C, leave the flight where the
-        call began.
+        Other Python threads run meanwhile. After an exception of a function of the wind, or Ctrl-C, the flight is as
+        before the call.
 
         Examples
         --------

@@ -231,7 +231,7 @@ class Flights:
         return found
 
     def info(self, ends: Any) -> dict[str, Any]:
-        """What else there is to know, in arrays."""
+        """Further information, in arrays."""
         bodies = self.batch.bodies()
         places, _ = self.targets()
         return {

@@ -63,7 +63,7 @@ class FlightVectorEnv(VectorBase):  # type: ignore[misc]
         Returns
         -------
         observations : numpy.ndarray, shape (n, size)
-            What each environment sees.
+            The observations of each environment.
         infos : dict
             As of FlightEnv, in arrays.
 
@@ -104,7 +104,7 @@ class FlightVectorEnv(VectorBase):  # type: ignore[misc]
         Returns
         -------
         observations : numpy.ndarray, shape (n, size)
-            What each environment sees.
+            The observations of each environment.
         rewards : numpy.ndarray, shape (n,)
             Of this step, each at most 1.
         terminations : numpy.ndarray, shape (n,)

@@ -266,7 +266,7 @@ class VehicleMethods(FlightMethods):
         threads: int = 0,
         progress: bool | Callable[[int, int], object] | None = None,
     ) -> StudyResult:
-        """What uncertain parameters do to its metrics: `wingbeat.tolerance`.
+        """How uncertain parameters affect its metrics: `wingbeat.tolerance`.
 
         Examples
         --------

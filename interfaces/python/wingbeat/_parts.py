@@ -46,7 +46,7 @@ def _column(dimension: str | tuple[()], values: Any, unit: str, long_name: str) 
 def motor_curves(
     motor: Vehicle | Mapping[str, Any], *, voltage: float | str | None = None, speed: Any = None
 ) -> xarray.Dataset:
-    """What a motor gives at constant speed and terminal voltage, over the speed of its output shaft [rad/s].
+    """Curves of a motor at constant speed and terminal voltage, over the speed of its output shaft [rad/s].
 
     Parameters
     ----------

@@ -24,7 +24,7 @@ CYCLE_POINTS = 361
 
 
 class Event(NamedTuple):
-    """What happens to a vehicle in time.
+    """An event in time.
 
     Examples
     --------

@@ -18,12 +18,12 @@ class VehicleSection(Section):
         """
     @property
     def mass(self) -> Quantity | None:
-        """mass of the vehicle but for the masses stated for themselves (motor.mass, supply.mass, supply.specific_energy, spring.mass, transmission.rod_linear_density); enables lift_to_weight.
+        """mass of the vehicle without the masses stated separately (motor.mass, supply.mass, supply.specific_energy, spring.mass, transmission.rod_linear_density); enables lift_to_weight.
         [kg] Range: > 0. Default: unknown.
         """
     @property
     def motors(self) -> Quantity:
-        """M, number of motors on the supply, each with a transmission and wings of its own as below, in phase.
+        """M, number of motors on the supply, each with its own transmission and wings, in phase.
         Number. Range: whole number >= 1. Default: 1.
         """
 
@@ -67,7 +67,7 @@ class SupplySection(Section):
         """
     @property
     def duty(self) -> Quantity | None:
-        """D, fraction of a period switched on; required of pwm, on a battery the speed control's.
+        """D, fraction of a period switched on; required for pwm, else of the speed control.
         Number. Range: 0 to 1. Default: 1.
         Only with supply.type = pwm or battery.
         """
@@ -99,7 +99,7 @@ class SupplySection(Section):
         """
     @property
     def internal_resistance(self) -> Quantity | None:
-        """R_i of one cell: the terminals see E - R_i i, times cells.
+        """R_i of one cell: terminal voltage E - R_i i, times cells.
         [ohm] Range: >= 0. Default: required.
         Only with supply.type = battery or battery-sine.
         """
@@ -111,7 +111,7 @@ class SupplySection(Section):
         """
     @property
     def charge(self) -> Quantity | None:
-        """state of charge: where a run computes, where a flight starts.
+        """state of charge of a run, and at the start of a flight.
         Number. Range: 0 to 1. Default: 1.
         Only with supply.type = battery or battery-sine.
         """
@@ -139,7 +139,7 @@ class SupplySection(Section):
 class MotorSection(Section):
     @property
     def gear_ratio(self) -> Quantity | None:
-        """n, motor turns per output turn; given, the motor constants below are the motor shaft's.
+        """n, motor turns per output turn; with it the constants below hold at the motor shaft.
         Number. Range: > 0. Default: none: constants at the output shaft.
         """
     @property
@@ -207,7 +207,7 @@ class MotorSection(Section):
         """
     @property
     def thermal_resistance_winding(self) -> Quantity | None:
-        """R_th1, thermal resistance from winding to case; given, the constants follow the temperatures.
+        """R_th1, thermal resistance from winding to case; with it the constants depend on temperature.
         [K/W] Range: >= 0. Default: none: constants the same at any load.
         """
     @property
@@ -242,7 +242,7 @@ class MotorSection(Section):
         """
     @property
     def winding_temperature_max(self) -> Quantity | None:
-        """largest temperature allowed to the winding, of its data sheet: beyond, a result is outside the domain; 125 degC unless given.
+        """largest winding temperature, from the data sheet: above it a result is outside the domain; 125 degC unless given.
         [K] Range: 173.15 to 1000 K (-100 to 727 degC). Default: 398.15 K.
         Only with motor.thermal_resistance_winding.
         """
@@ -281,7 +281,7 @@ class ElectronicsSection(Section):
 class PiezoSection(Section):
     @property
     def force_per_volt(self) -> Quantity | None:
-        """kappa of a piezo bimorph that swings the wings in the place of a motor: force at its tip per volt.
+        """kappa of a piezo bimorph that replaces the motor: force at its tip per volt.
         [N/V] Range: > 0. Default: none: a motor.
         """
     @property
@@ -441,7 +441,7 @@ class TransmissionSection(Section):
         """
     @property
     def reference_radius(self) -> Quantity | None:
-        """r_ref, radius at which the wings' moment is taken up: load-proportional friction acts on that moment over r_ref.
+        """r_ref, radius at which the moment of the wings acts: load-proportional friction acts on that moment over r_ref.
         [m] Range: > 0. Default: required.
         Only with transmission.type = tabulated.
         """
@@ -466,7 +466,7 @@ class FrictionSection(Section):
         """
     @property
     def reference_radius(self) -> Quantity | None:
-        """r_ref, radius at which the wings' moment is taken up: load-proportional friction acts on that moment over r_ref.
+        """r_ref, radius at which the moment of the wings acts: load-proportional friction acts on that moment over r_ref.
         [m] Range: > 0. Default: none.
         Only with transmission.type = direct.
         """
@@ -655,7 +655,7 @@ class WingSection(Section):
         """
     @property
     def rib_count(self) -> Quantity | None:
-        """n_r, ribs of one wing, which part its length into n_r + 1 equal bays.
+        """n_r, ribs of one wing, which divide its length into n_r + 1 equal bays.
         Number. Range: whole number, 0 to 1000. Default: 0.
         Only with wing.areal_density.
         """
@@ -697,14 +697,14 @@ class PitchSection(Section):
         """
     @property
     def stop_low(self) -> Quantity | None:
-        """of stops that differ, the lower: psi goes no lower; the trailing edge is behind a wing that swings forward then.
+        """lower stop, if the stops differ: smallest psi; the trailing edge is behind a wing that swings forward then.
         [rad] Range: < 0, > -pi. Default: none.
         Only with pitch.stiffness.
         Instead of pitch.stop.
         """
     @property
     def stop_high(self) -> Quantity | None:
-        """of stops that differ, the upper: psi goes no higher.
+        """upper stop, if the stops differ: largest psi.
         [rad] Range: > 0, < pi. Default: none.
         Only with pitch.stiffness.
         Instead of pitch.stop.
@@ -743,18 +743,18 @@ class PitchSection(Section):
 class AerodynamicsClapAndFlingSection(Section):
     @property
     def amplitude(self) -> Quantity | None:
-        """A: where wings meet at the reversal with the largest stroke angle, all aerodynamic forces are multiplied by 1 + A exp(-s / (lambda c)) on their way apart, s being the way of the 70 % station since then and c the mean chord.
+        """A: where wings meet at the reversal with the largest stroke angle, all aerodynamic forces are multiplied by 1 + A exp(-s / (lambda c)) as they part, where s is the path of the 70 % station since then and c the mean chord.
         Number. Range: >= 0. Default: none.
         """
     @property
     def decay(self) -> Quantity | None:
-        """lambda, way over the mean chord on which it decays.
+        """lambda, length of its decay over the mean chord.
         Number. Range: > 0. Default: 1.
         Only with aerodynamics.clap_and_fling.amplitude.
         """
     @property
     def gap(self) -> Quantity | None:
-        """g, distance over the mean chord of the 70 % stations of the two wings at the reversal, up to which they act on each other.
+        """g, distance over the mean chord of the 70 % stations of the two wings at the reversal, up to which they interact.
         Number. Range: >= 0. Default: 1.
         Only with aerodynamics.clap_and_fling.amplitude.
         """
@@ -795,7 +795,7 @@ class AerodynamicsSection(Section):
         """
     @property
     def kinematic_viscosity(self) -> Quantity:
-        """nu, kinematic viscosity of the air: it sets the Reynolds number, and no force.
+        """nu, kinematic viscosity of the air, for the Reynolds number; no force depends on it.
         [m2/s] Range: > 0. Default: 1.5e-5 m2/s.
         """
     @property
@@ -815,7 +815,7 @@ class AerodynamicsSection(Section):
         """
     @property
     def induced_velocity(self) -> Quantity | None:
-        """share, 0 to 1, of the induced velocity of momentum theory that counts. Coefficients measured on flapping wings hold a wake of their own, so that 1 counts part of it twice.
+        """applied share, 0 to 1, of the induced velocity of momentum theory. Coefficients measured on flapping wings include a part of the wake, so that 1 counts this part twice.
         Number. Range: 0 to 1. Default: none.
         """
     @property
@@ -856,13 +856,13 @@ class AerodynamicsSection(Section):
         """
     @property
     def table_air_density(self) -> Quantity | None:
-        """density of the air for which the table holds; loads go with the density.
+        """density of the air for which the table holds; loads are proportional to it.
         [kg/m3] Range: > 0. Default: aerodynamics.air_density.
         Only with aerodynamics.type = tabulated.
         """
     @property
     def table_wings(self) -> Quantity | None:
-        """how many wings the loads of the table are of.
+        """number of wings for the loads of the table.
         Number. Range: > 0. Default: all.
         Only with aerodynamics.type = tabulated.
         """

@@ -320,7 +320,7 @@ def tolerance(
     threads: int = 0,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> StudyResult:
-    """What uncertain parameters do to a vehicle's metrics: `wingbeat tolerance`.
+    """How uncertain parameters affect a vehicle's metrics: `wingbeat tolerance`.
 
     Parameters
     ----------

@@ -311,7 +311,7 @@ def make_vec(
     n : int
         Number of flights.
     threads : int, default 0
-        At most so many threads; 0: one for each core.
+        Largest number of threads; 0: one for each core.
     rate : float or str, default 100.0
         Rate of control [Hz].
     duration : float or str, default 10.0
