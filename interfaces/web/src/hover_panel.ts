@@ -72,7 +72,7 @@ export class HoverPanel {
     const limits = {key, low: field('lower limit', Math.max(low, value / 4)), high: field('upper limit', 2 * high)};
     if (row.upper !== null) limits.high.value = readable(Math.min(2 * high, row.upper), row.unit ?? '1', 5);
     this.rows.push(limits);
-    const remove = html('button', {type: 'button', 'aria-label': `leave ${key} as it is`}, 'remove');
+    const remove = html('button', {type: 'button', 'aria-label': `remove ${key}`}, 'remove');
     const line = html(
       'tr',
       {},
@@ -159,7 +159,8 @@ export class HoverPanel {
       (key, n) =>
         `${key} ${readable(first.values[n], this.unitOf(key))} to ${readable(last.values[n], this.unitOf(key))}`,
     );
-    const aim = `${tried + 1} designs were solved. Lift over weight ${readable(first.lift, '1')} to ${readable(last.lift, '1')}, `;
+    const lifts = `${readable(first.lift, '1')} to ${readable(last.lift, '1')}`,
+      aim = `${tried + 1} designs were solved. Lift over weight ${lifts}, `;
     byId('hover-note').textContent =
       (hovers ? '' : `No design within these limits reaches ${target}. `) +
       `${aim}electrical power ${readable(first.power, 'W')} to ${readable(last.power, 'W')}; ${moves.join(', ')}.` +

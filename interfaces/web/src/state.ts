@@ -64,7 +64,7 @@ export class History<S> {
     return this.index + 1 < this.entries.length;
   }
 
-  /** Changes with the same tag in quick succession, such as presses of an arrow key, are one step; true for a new step. */
+  /** True for a new step; changes with the same tag in quick succession, such as presses of an arrow key, are one. */
   commit(state: S, tag = '', time = Date.now()): boolean {
     const last = this.entries[this.index]!;
     if (state === last.state) return false;

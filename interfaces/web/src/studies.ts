@@ -160,7 +160,7 @@ export class Studies {
     stale.hidden = present !== null && !other;
     stale.textContent =
       present === null
-        ? `Computed for ${of}, not for the design shown above. A click takes a design of this picture with all its values.`
+        ? `Computed for ${of}, not for the design shown above. A click takes a design of this picture, all of it.`
         : `Computed over ${this.axesOf(study).join(' and ')}; compute again for the keys chosen.`;
     byId('study-picture')
       .closest('figure')!

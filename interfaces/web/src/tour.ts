@@ -56,8 +56,8 @@ const steps: Step[] = [
     design: () => changed(paper(), {...conserving, 'friction.type': 'none'}),
     pinned: () => changed(paper(), conserving),
     text: (e) => [
-      'The same vehicle with no friction in the transmission; the one with friction is pinned as A and drawn faintly. ' +
-        'Both use the formulation virtual-work here: with rod-force, the formulation of the paper, the vehicle without ' +
+      'The same vehicle with no friction in the transmission; the one with friction is pinned as A and drawn ' +
+        'faintly. Both use the formulation virtual-work: with rod-force, that of the paper, the vehicle without ' +
         'friction is outside the domain of validity, because more than 5 % of its input power is not conserved.',
       `A model that leaves friction out promises ${change(e, 'lift_mean_n')} lift and ` +
         `${change(e, 'frequency_hz')} frequency at the same voltage: ${shown(e, 'lift_mean_n', 'N')} instead ` +

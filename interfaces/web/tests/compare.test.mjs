@@ -90,7 +90,7 @@ test('make it hover: limits are kept, what is out of reach is said, wrong limits
   assert.equal(await limit.getAttribute('aria-invalid'), 'true');
   assert.match(await page.textContent('#hover-note'), /supply\.voltage, upper limit: .*parsnips/);
   await limit.fill('3200 mV');
-  await page.getByRole('button', {name: 'leave transmission.crank_radius as it is'}).click();
+  await page.getByRole('button', {name: 'remove transmission.crank_radius'}).click();
   await page.click('#hover');
   await page.waitForSelector('body[data-hover]', {timeout: 120_000});
   assert.match(await page.textContent('#hover-note'), /No design within these limits reaches 1\./);

@@ -186,7 +186,7 @@ test('make it hover: the design of least power at the target, from either side o
   }
 });
 
-test('make it hover: out of reach is said, limits are kept, designs that fail or leave the domain are not taken', () => {
+test('make it hover: out of reach is said, limits are kept, no failing design is taken', () => {
   const evaluate = powerLaw(1, 1, 1, 2);
   const limits = {lower: [0.5, 0.5], upper: [2, 2], target: 100};
   const {path, hovers} = hover.makeHover(evaluate([1, 1]), limits, evaluate);
