@@ -2,6 +2,7 @@ import {gzipSync} from 'node:zlib';
 import {readFileSync, readdirSync, writeFileSync} from 'node:fs';
 import {join, resolve} from 'node:path';
 import {defineConfig} from 'vite';
+import {notices, version} from './notices.js';
 
 // scripts/build-explorer says where the core is and where the page goes.
 const core = process.env.WINGBEAT_CORE;
@@ -39,6 +40,7 @@ const singleFile = {
 
 export default defineConfig({
   base: './',
+  define: {__VERSION__: JSON.stringify(version()), __NOTICES__: JSON.stringify(notices())},
   resolve: {alias: {'#core': resolve(core), '#data': resolve('../../data')}},
   build: {
     outDir: join(output, 'site'),

@@ -118,6 +118,8 @@ const Description<RunResult>& solved_description() {
           .part("balance", "mean powers of a cycle", balance_description(),
                 [](const R& r) { return energy_audit(r.metrics); })
           .part("evidence", "", evidence_description(), &R::evidence)
+          .always("reached", "", "false: it flaps, but the frequency or lift asked for is out of reach",
+                  [](const R& r) { return !r.search || r.search->outcome == FrequencyOutcome::reached; })
           .always("supply_voltage", "V", "", [](const R& r) { return r.design.supply.voltage; });
   return description;
 }

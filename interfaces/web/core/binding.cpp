@@ -11,6 +11,7 @@
 
 #include "answers.hpp"
 #include "explored.hpp"
+#include "wingbeat/files/units.hpp"
 
 namespace wingbeat::web {
 namespace {
@@ -125,6 +126,10 @@ val motors(const std::string& text, const std::string& assignments, const std::s
   return attempted([&] { return json_result(motors_for(explored(text, texts_of(assignments)), catalogue, gear)); });
 }
 
+val quantity(const std::string& text, const std::string& unit) {
+  return attempted([&] { return json_result({{"value", parse_quantity(text, unit)}}); });
+}
+
 std::string tables() { return tables_of_the_library().dump(); }
 
 }  // namespace
@@ -142,4 +147,5 @@ EMSCRIPTEN_BINDINGS(wingbeat) {
   emscripten::function("mechanism", &mechanism);
   emscripten::function("ensemble", &ensemble);
   emscripten::function("motors", &motors);
+  emscripten::function("quantity", &quantity);
 }

@@ -229,6 +229,8 @@ export type Solved = {
   /** mean powers of a cycle */
   balance: Balance;
   evidence: Evidence;
+  /** false: it flaps, but the frequency or lift asked for is out of reach */
+  reached: boolean;
   /** [V] */
   supply_voltage: number | null;
 };

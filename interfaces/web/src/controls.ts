@@ -10,7 +10,11 @@ export interface Sensitivity {
 
 interface Row {
   /** What it shows, so that only what is new is written. */
-  shown?: string;
+  shown: string;
+  /** A text that was refused stays in its field until another one is taken. */
+  refused: boolean;
+  /** While the pointer holds the slider it is where the pointer is. */
+  held: boolean;
   key: Key;
   element: HTMLElement;
   slider: HTMLInputElement | null;
@@ -41,7 +45,7 @@ export const choicesOf = (key: Key) =>
 function hasPlace(key: Key, values: Values): boolean {
   if (!key.only_with) return true;
   const [path, allowed] = key.only_with.split(' = ');
-  const value = values[path];
+  const value = values[path!];
   if (value === undefined || value === null) return false;
   return !allowed || allowed.split('|').some((word) => word.trim() === String(value));
 }
@@ -60,7 +64,8 @@ function rangeOf(key: Key, base: number, elsewhere: number): Row['range'] {
 
 export class Controls {
   private rows: Row[] = [];
-  private shown = '';
+  private layout = '';
+  private text: string | null = null;
 
   /** `typical` is a size for keys that are 0 in the vehicle: the largest of the shipped vehicles. */
   constructor(
@@ -75,10 +80,13 @@ export class Controls {
     const keys = this.keys.filter(
       (key) => hasPlace(key, values) && !(typed.test(key.key.split('.').pop() ?? '') && !key.number),
     );
-    const layout = keys.map((k) => `${k.key}${values[k.key] === undefined ? '-' : '+'}`).join() + stated.text.length;
-    if (layout !== this.shown) {
+    const layout = keys.map((k) => `${k.key}${values[k.key] === undefined ? '-' : '+'}`).join();
+    if (layout !== this.layout || stated.text !== this.text) {
+      const focused = this.parent.contains(document.activeElement) ? document.activeElement?.id : '';
       this.build(keys, values, base);
-      this.shown = layout;
+      this.layout = layout;
+      this.text = stated.text;
+      if (focused) document.getElementById(focused)?.focus();
     }
     for (const row of this.rows) this.move(row, values[row.key.key], row.key.key in stated.changes);
   }
@@ -109,19 +117,33 @@ export class Controls {
     }
   }
 
+  /** Marks the control of the key, which is brought to sight; false where there is none. */
   complain(key: string, message: string) {
     const row = this.rows.find((r) => r.key.key === key);
     if (!row) return false;
-    row.note.textContent = message;
+    row.refused = true;
+    row.note.textContent = `${message}. In use: ${row.shown.trim() || 'none'}`;
     row.field.setAttribute('aria-invalid', 'true');
+    row.field.setAttribute('aria-describedby', row.note.id);
+    for (let e: Element | null = row.element; e && e !== this.parent; e = e.parentElement) {
+      if (e instanceof HTMLDetailsElement) e.open = true;
+    }
+    row.element.scrollIntoView({block: 'nearest'});
     return true;
   }
 
-  clearComplaints() {
-    for (const row of this.rows) {
-      row.note.textContent = '';
-      row.field.removeAttribute('aria-invalid');
-    }
+  /** A value of the key has been taken. */
+  accept(key: string) {
+    const row = this.rows.find((r) => r.key.key === key);
+    if (!row?.refused) return;
+    row.refused = false;
+    row.note.textContent = '';
+    row.field.removeAttribute('aria-invalid');
+    row.field.removeAttribute('aria-describedby');
+    this.write(row);
+  }
+  acceptAll() {
+    for (const row of this.rows) this.accept(row.key.key);
   }
 
   private build(keys: Key[], values: Values, base: Values) {
@@ -133,7 +155,7 @@ export class Controls {
     this.parent.replaceChildren();
     const sections = new Map<string, Key[]>();
     for (const key of keys) {
-      const section = key.key.split('.')[0];
+      const section = key.key.split('.')[0]!;
       sections.set(section, [...(sections.get(section) ?? []), key]);
     }
     for (const [section, members] of sections) {
@@ -165,7 +187,7 @@ export class Controls {
   private build_row(key: Key, values: Values, base: Values): HTMLElement {
     const name = key.key.slice(key.key.indexOf('.') + 1),
       id = `key-${key.key.replaceAll('.', '-')}`;
-    const note = html('p', {class: 'complaint', role: 'alert'});
+    const note = html('p', {class: 'complaint', role: 'alert', id: `${id}-note`});
     const meaning = `${key.meaning}${key.unit && key.unit !== '1' ? ` [${shownUnit(key.unit)}]` : ''}, ${key.range}`;
     const label = html('label', {for: id, title: meaning}, name.replaceAll('_', ' '));
     const reset = html(
@@ -175,7 +197,10 @@ export class Controls {
         class: 'reset',
         title: `${key.key} as in the file`,
         'aria-label': `${key.key} as in the file`,
-        click: () => this.events.reset(key.key),
+        click: () => {
+          this.events.reset(key.key);
+          document.getElementById(id)?.focus();
+        },
       },
       '↺',
     );
@@ -201,6 +226,13 @@ export class Controls {
         placeholder: key.quantity ?? key.range,
         change: () => {
           if (field.value.trim()) this.events.change(key.key, field.value.trim(), true);
+          else this.accept(key.key);
+        },
+        keydown: (event) => {
+          if ((event as KeyboardEvent).key !== 'Escape') return;
+          this.accept(key.key);
+          const row = this.rows.find((r) => r.key === key);
+          if (row) this.write(row);
         },
       });
     }
@@ -213,22 +245,26 @@ export class Controls {
         const found = range;
         slider = html('input', {
           type: 'range',
+          id: `${id}-slider`,
           min: 0,
           max: steps,
           step: 1,
           'aria-label': `${key.key}, slider`,
           title: meaning,
         });
-        const moved = (final: boolean) => () =>
+        const moved = (final: boolean) => () => {
+          const row = this.rows.find((r) => r.key === key);
+          if (row) row.held = !final;
           this.events.change(key.key, exact(valueAt(found, Number(slider!.value), key.whole)), final);
+        };
         slider.addEventListener('input', moved(false));
         slider.addEventListener('change', moved(true));
         bars = html('span', {class: 'bars', role: 'img', 'aria-label': 'sensitivities'});
         element.append(slider, bars);
       }
     }
-    element.append(note);
-    this.rows.push({key, element, slider, field, bars, note, range});
+    element.append(note, html('p', {class: 'meaning', id: `${id}-meaning`}, meaning));
+    this.rows.push({key, element, slider, field, bars, note, range, shown: '', refused: false, held: false});
     return element;
   }
 
@@ -239,14 +275,18 @@ export class Controls {
         : value === undefined || value === null
           ? ''
           : String(value);
-    if (row.shown === `${text} ${changed}` && row.field.value === text) return;
-    row.shown = `${text} ${changed}`;
+    row.shown = text;
     row.element.classList.toggle('changed', changed);
-    if (document.activeElement !== row.field || row.field instanceof HTMLSelectElement) row.field.value = text;
-    if (row.slider && row.range && typeof value === 'number' && document.activeElement !== row.slider) {
-      row.slider.value = String(placeOf(row.range, value));
+    if (!row.refused) this.write(row);
+    if (row.slider && row.range && typeof value === 'number' && !row.held) {
+      const place = String(placeOf(row.range, value));
+      if (row.slider.value !== place) row.slider.value = place;
     }
-    row.slider?.setAttribute('aria-valuetext', text);
+    if (row.slider?.getAttribute('aria-valuetext') !== text) row.slider?.setAttribute('aria-valuetext', text);
+  }
+
+  private write({field, shown}: Row) {
+    if (field.value !== shown) field.value = shown;
   }
 }
 

@@ -22,8 +22,8 @@ export interface RunOptions {
 }
 /** A vehicle file and values of keys on top of it, as `--set` takes them. */
 export interface Stated {
-  text: string;
-  changes: Record<string, string>;
+  readonly text: string;
+  readonly changes: Readonly<Record<string, string>>;
 }
 
 /** What the library refuses, in its own sentences. */
@@ -48,15 +48,16 @@ interface Module {
   mechanism(text: string, changes: string, angles: Float64Array): Answer;
   ensemble(text: string, changes: string, keys: string, values: Float64Array, options: string): Answer;
   motors(text: string, changes: string, catalogue: string, gear: number): Answer;
+  quantity(text: string, unit: string): Answer;
 }
 
 /** `--set` assignments. */
-export const assignments = (changes: Record<string, string>) => Object.entries(changes).map(([k, v]) => `${k}=${v}`);
+export const assignments = (changes: Stated['changes']) => Object.entries(changes).map(([k, v]) => `${k}=${v}`);
 
 export class Core {
   readonly tables: Tables;
   constructor(private readonly module: Module) {
-    this.tables = JSON.parse(module.tables());
+    this.tables = JSON.parse(module.tables()) as Tables;
   }
 
   read(text: string, name: string, tables: Record<string, string> = {}): {toml: string; name: string} {
@@ -89,6 +90,10 @@ export class Core {
   ): {statuses: string[]; columns: Columns} {
     return unpacked(this.module.ensemble(s.text, list(s), JSON.stringify(keys), values, pack(options)));
   }
+  /** The SI value of "1200 rpm" for "Hz", as the options of the program read it. */
+  quantity(text: string, unit: string): number {
+    return unpacked<{value: number}>(this.module.quantity(text, unit)).value;
+  }
   motors(s: Stated, catalogue: string, gear: number): Motor[] {
     return unpacked<{motors: Motor[]}>(this.module.motors(s.text, list(s), catalogue, gear)).motors;
   }
@@ -98,10 +103,10 @@ const list = (s: Stated) => JSON.stringify(assignments(s.changes));
 const pack = (options: RunOptions) => JSON.stringify(options);
 
 function unpacked<T>(answer: Answer): T {
-  const found = JSON.parse(answer.json);
+  const found = JSON.parse(answer.json) as {errors?: Problem[]; columns?: Columns};
   if (found.errors) throw new Refused(found.errors);
   if (answer.columns) found.columns = answer.columns;
-  return found;
+  return found as T;
 }
 
 /** The compiled code, from the page itself where it stands in it, else from beside it. */
@@ -115,7 +120,7 @@ export async function compiledCore(): Promise<WebAssembly.Module> {
 
 export async function startCore(compiled: WebAssembly.Module): Promise<Core> {
   const instantiateWasm = (imports: WebAssembly.Imports, done: (instance: WebAssembly.Instance) => void) => {
-    WebAssembly.instantiate(compiled, imports).then(done);
+    void WebAssembly.instantiate(compiled, imports).then(done);
     return {};
   };
   // Named, the file is not looked for beside the script, which has no place of its own in a worker made from text.

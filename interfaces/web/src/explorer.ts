@@ -1,154 +1,150 @@
-// From a state to what the page shows: everything that follows a change.
-import {type Background} from './background';
-import {
-  type Columns,
-  type Core,
-  type Mechanism,
-  type Problem,
-  Refused,
-  type Solved,
-  type StartUp,
-  type Stated,
-  type Values,
-} from './core';
-import {Controls, type Sensitivity} from './controls';
+// The state of the page and what follows from it: a change is checked at once, solved in a worker, shown when solved.
+import {type Controls, type Sensitivity} from './controls';
+import {type Core, type Problem, Refused, type RunOptions, type Values} from './core';
 import {byId} from './dom';
-import {pythonProgram, shellCommand} from './elsewhere';
-import {type Abscissa, CyclePlots} from './pictures/cycle_plots';
-import {
-  atRest,
-  drawMechanism,
-  type Instant,
-  instantAt,
-  type Peaks,
-  peaksOf,
-  restText,
-  strokeAt,
-} from './pictures/mechanism';
-import {drawSankey} from './pictures/sankey';
-import {Playback} from './playback';
-import {numberOf, showBalance, showHeadline, showMetrics} from './results';
-import {type Design, linkOf, runOptions, type State} from './state';
-import {shipped} from './vehicles';
+import {Channel, type Outcome} from './engine';
+import {linkOf} from './link';
+import {numberOf} from './results';
+import {type Design, History, identityOf, maxPins, runOptions, type State} from './state';
+import {OwnFiles, shipped} from './vehicles';
+import type {Views} from './views';
+import type {Computed} from './worker';
 
-declare global {
-  /** When the first result stood on the page [ms since navigation]. */
-  interface Window {
-    firstNumber?: number;
-  }
+/** Results with the state of which they are. */
+export interface Shown extends Computed {
+  readonly state: State;
+  readonly pins: readonly Computed[];
 }
-
-const rows = 361;
-const fullTurn = Float64Array.from({length: 181}, (_, n) => (2 * Math.PI * n) / 180);
-
-/** What is known of one design. */
-interface Computed {
-  values: Values;
-  solved: Solved;
-  mechanism: Mechanism;
-  startUp: StartUp | null;
-  peaks: Peaks | null;
-  range: [number, number];
+export interface Going {
+  /** False while a slider still moves. */
+  final?: boolean;
+  /** The control that asks, which shows why a change is refused: a key, "held"; else the message of the page does. */
+  origin?: string;
+  /** Undone and redone states are in the history; those of Back and Forward in the browser's, too. */
+  from?: 'user' | 'undo' | 'browser';
+  /** The address stays as it is. */
+  keepAddress?: boolean;
 }
+export type Work = 'solving' | 'solved' | 'failed';
+
+const solveDeadline = 20_000,
+  derivativeDeadline = 30_000,
+  kept = 24, // designs
+  longest = 500; // entries of the browser's history
+/** Entries of the browser's history outlive the page; those of another page's are not taken for this one's. */
+const session = crypto.getRandomValues(new Uint32Array(1))[0];
 
 export class Explorer {
   state: State;
-  current!: Computed;
-  private pinned: Computed | null = null;
-  private base: Values = {};
-  private readonly controls: Controls;
-  readonly plots: CyclePlots;
-  readonly playback: Playback;
-  private readonly typical: Record<string, number> = {};
+  readonly history: History<State>;
+  readonly files = new OwnFiles();
+  shown: Shown | null = null;
+  values: Values = {};
+  base: Values = {};
+  /** The largest value of each number among the vehicles of the page: a scale for keys that are 0 in one of them. */
+  readonly typical: Readonly<Record<string, number>>;
+  work: Work = 'solving';
+  /** Why the state has no results, where work is "failed". */
+  failure = '';
+  private readonly solver: Channel;
+  private readonly slopes: Channel;
+  private readonly flights: Channel;
+  private readonly cache = new Map<string, Computed>();
+  private readonly listeners: (() => void)[] = [];
+  private readonly visited = new Map<number, State>();
+  private written = 0;
+  private good: State;
   private settle = 0;
-  private flowRoom = 0;
-  abscissa: Abscissa = 'time';
-  /** Set by those who show tools and studies. */
-  refreshTools: () => void = () => {};
-  keysChanged: () => void = () => {};
+  private step = false;
+  private idlers: (() => void)[] = [];
+  /** Fields beside those of the keys that show why what they ask for is refused. */
+  readonly fields = new Map<string, {complain: (text: string) => void; accept: () => void}>();
+  controls!: Controls;
+  views!: Views;
 
   constructor(
     readonly core: Core,
-    readonly background: Background,
+    readonly compiled: WebAssembly.Module,
     state: State,
   ) {
-    this.state = state;
-    this.findTypical();
-    this.controls = new Controls(byId('controls'), core.tables.keys, this.typical, {
-      change: (key, value, final) => this.change({[key]: value}, final),
-      reset: (key) => this.withdraw(key),
-    });
-    this.plots = new CyclePlots(byId('plots'), (share) => {
-      this.pause();
-      this.playback.show(share);
-    });
-    this.playback = new Playback(
-      () => this.period(),
-      (share) => this.drawInstant(share),
-      () => this.hasCycle(),
-    );
-  }
-
-  /** The largest value of each number among the vehicles that come along: a scale for keys that are 0 here. */
-  private findTypical() {
+    this.state = this.good = state;
+    this.history = new History(state);
+    this.solver = new Channel(compiled, solveDeadline, 400);
+    this.slopes = new Channel(compiled, derivativeDeadline, 600);
+    this.flights = new Channel(compiled, derivativeDeadline, 600);
+    this.solver.warm();
+    const typical: Record<string, number> = {};
     for (const text of Object.values(shipped)) {
-      for (const [key, value] of Object.entries(this.core.values({text, changes: {}}))) {
-        if (typeof value === 'number') this.typical[key] = Math.max(this.typical[key] ?? 0, Math.abs(value));
+      for (const [key, value] of Object.entries(core.values({text, changes: {}}))) {
+        if (typeof value === 'number') typical[key] = Math.max(typical[key] ?? 0, Math.abs(value));
       }
     }
+    this.typical = typical;
   }
 
-  typicalOf(key: string) {
-    return this.typical[key] ?? 0;
+  /** Called whenever the state or what is known of it changes. */
+  watch(listener: () => void) {
+    this.listeners.push(listener);
+  }
+  private notify() {
+    for (const listener of this.listeners) listener();
   }
 
   // ---- changes
 
-  /** Takes the state and shows it; what the library refuses is said, and the state before stays. */
-  open(state: State): boolean {
+  /** Takes a state. False where it is refused, overtaken or ended; the state before stays where it is refused. */
+  async go(
+    state: State,
+    {final = true, origin = '', from = 'user', keepAddress = false}: Going = {},
+  ): Promise<boolean> {
     const before = this.state;
-    this.state = state;
+    let values, base;
     try {
-      this.base = this.core.values({text: state.design.text, changes: {}});
-      this.pinned = state.pinned ? this.computed(state.pinned) : null;
-      this.update(true);
-      return true;
+      values = this.core.values(state.design);
+      base = this.core.values({text: state.design.text, changes: {}});
+      for (const pin of state.pins) this.core.values(pin);
     } catch (error) {
-      this.state = before;
-      if (this.current) this.base = this.core.values({text: before.design.text, changes: {}});
-      this.complain(error);
+      this.refuse(error, origin);
       return false;
+    }
+    Object.assign(this, {state, values, base});
+    if (from !== 'user') this.history.visit(state);
+    if (from === 'browser') this.step = false;
+    else if (final) this.step = from === 'undo' || this.history.commit(state, origin) || this.step;
+    if (origin) this.accept(origin);
+    if (!origin || state.design.text !== before.design.text) {
+      this.controls.acceptAll();
+      for (const field of this.fields.values()) field.accept();
+    }
+    this.say('');
+    this.controls.show(state.design, values, base);
+    return this.solve(origin, final && !keepAddress);
+  }
+
+  /** Why the library refuses a state; nothing where it takes it. */
+  problemsOf(state: State): string[] {
+    try {
+      for (const design of [state.design, ...state.pins]) this.core.values(design);
+      return [];
+    } catch (error) {
+      if (!(error instanceof Refused)) throw error;
+      return error.problems.map((p) => p.message);
     }
   }
 
-  /** New values of keys, each as text for the library. */
-  change(changes: Record<string, string>, final = true) {
-    const before = this.state.design;
-    const merged = {...before.changes, ...changes};
+  /** New values of keys, each as text for the library; an empty one takes the key's change back. */
+  change(changes: Record<string, string>, going: Going = {}): Promise<boolean> {
+    return this.go({...this.state, design: this.changed(this.state.design, changes)}, going);
+  }
+
+  changed(design: Design, changes: Record<string, string>): Design {
+    const merged = {...design.changes, ...changes};
     for (const key of Object.keys(changes)) {
       // of alternatives the last one given holds
       for (const other of this.core.tables.keys.find((k) => k.key === key)?.alternatives ?? []) delete merged[other];
       if (changes[key] === '') delete merged[key];
     }
-    this.attempt({...before, changes: merged}, final);
-  }
-
-  withdraw(key: string) {
-    const changes = {...this.state.design.changes};
-    delete changes[key];
-    this.attempt({...this.state.design, changes}, true);
-  }
-
-  private attempt(design: Design, final: boolean) {
-    const before = this.state.design;
-    const filled = this.withStartingValues(design);
-    this.state.design = filled;
-    try {
-      this.update(final);
-    } catch (error) {
-      this.state.design = before;
-      this.complain(error);
-    }
+    return this.withStartingValues({...design, changes: merged});
   }
 
   /** A choice may ask for keys that the vehicle lacks: they get the values a new vehicle starts with. */
@@ -172,207 +168,176 @@ export class Explorer {
     return design;
   }
 
-  /** Beside the control of the key, or above the page where there is none, and for what a file says. */
-  complain(error: unknown, ofFile = false) {
+  undo() {
+    if (this.history.canUndo) return this.go(this.history.undo(), {from: 'undo'});
+  }
+  redo() {
+    if (this.history.canRedo) return this.go(this.history.redo(), {from: 'undo'});
+  }
+
+  pin(design: Design = this.state.design) {
+    return this.go({...this.state, pins: [...this.state.pins, design].slice(-maxPins)});
+  }
+
+  // ---- what is refused
+
+  refuse(error: unknown, origin = '') {
     const problems: Problem[] = error instanceof Refused ? error.problems : [{message: String(error)}];
-    const others = problems.filter((p) => ofFile || !p.key || !this.controls.complain(p.key, p.message));
+    const text = problems.map((p) => p.message).join('\n');
+    const field = this.fields.get(origin);
+    if (field) field.complain(text);
+    else if (!origin || !this.controls.complain(origin, text)) this.say(text);
+  }
+  private accept(origin: string) {
+    this.fields.get(origin)?.accept();
+    this.controls.accept(origin);
+  }
+
+  /** Above the page. */
+  say(text: string) {
     const message = byId('message');
-    message.hidden = others.length === 0;
-    message.textContent = others.map((p) => p.message).join('\n');
-    if (this.current) this.controls.show(this.stated, this.current.values, this.base);
+    message.hidden = !text;
+    message.textContent = text;
   }
 
-  // ---- from the state to the page
+  // ---- solving
 
-  get stated(): Stated {
-    return this.state.design;
-  }
-  hasCycle() {
-    return !!this.current?.solved.columns.time_s;
-  }
-
-  private period(): number {
-    if (!this.current) return 0;
-    const time = this.hasCycle() ? this.current.solved.columns.time_s : this.current.startUp?.columns.time_s;
-    return time && time.length ? time[time.length - 1] : 0;
-  }
-
-  private computed(stated: Stated): Computed {
-    const options = runOptions(this.state);
-    const values = this.core.values(stated);
-    const solved = this.core.solve(stated, {...options, rows});
-    const mechanism = this.core.mechanism(stated, fullTurn);
-    const cycle = solved.columns.time_s ? solved.columns : null;
-    const startUp = cycle || solved.report.status === null ? null : this.core.startUp(stated, options);
-    const stroke = mechanism.rotates
-      ? mechanism.columns.stroke_angle_rad
-      : (cycle?.stroke_angle_rad ?? new Float64Array([0]));
-    const range: [number, number] = [stroke.reduce((a, b) => Math.min(a, b)), stroke.reduce((a, b) => Math.max(a, b))];
-    return {values, solved, mechanism, startUp, peaks: cycle ? peaksOf(cycle) : null, range};
-  }
-
-  private update(final: boolean) {
-    const computed = this.computed(this.stated);
-    this.current = computed;
-    const {solved} = computed;
-    byId('message').hidden = true;
-    this.controls.clearComplaints();
-    this.controls.show(this.stated, computed.values, this.base);
-    showHeadline(byId('headline'), solved, this.core.tables.metrics);
-    window.firstNumber ??= performance.now();
-    const cycle = this.hasCycle() ? solved.columns : null;
-    this.drawFlows();
-    showBalance(byId('balance'), cycle ? solved.balance : null);
-    this.showAllMetrics();
-    this.drawCycle();
-    if (!cycle) this.playback.share = 0;
-    this.drawInstant(this.playback.share);
+  private async solve(origin: string, write: boolean): Promise<boolean> {
+    const {state} = this;
+    const options = runOptions(state);
+    const wanted = [state.design, ...state.pins];
+    const missing = wanted.filter((design) => !this.cache.has(identityOf(design, options)));
+    this.work = 'solving';
     clearTimeout(this.settle);
-    this.settle = window.setTimeout(() => this.settled(), final ? 0 : 120);
-  }
-
-  /** Pictures whose letters keep their size follow the width of the page. */
-  resized() {
-    this.flowRoom = 0;
-    this.drawFlows();
-  }
-
-  private drawFlows() {
-    const picture = document.querySelector<SVGSVGElement>('#sankey')!;
-    this.flowRoom ||= picture.clientWidth; // a layout of the page, so not at each change
-    drawSankey(picture, this.hasCycle() ? this.current.solved.balance : null, this.flowRoom);
-  }
-
-  drawCycle() {
-    const force =
-      {'four-bar': 'coupler force', tabulated: 'reaction'}[this.current.mechanism.type as string] ?? 'rod force';
-    const ghost = this.pinned?.solved.columns.time_s ? this.pinned.solved.columns : null;
-    this.plots.draw(this.hasCycle() ? this.current.solved.columns : null, ghost, this.abscissa, force);
-  }
-
-  private drawInstant(share: number) {
-    if (!this.current) return;
-    const {mechanism, range, solved, startUp} = this.current;
-    const picture = document.querySelector<SVGSVGElement>('#mechanism')!;
-    const status = solved.report.status ?? 'undecided';
-    let rest = null;
-    let instant: Instant;
-    if (this.hasCycle()) {
-      instant = instantAt(solved.columns, this.current.peaks!, share);
-      this.plots.moveCursor(share);
-    } else {
-      const angle = solved.evidence.angle_rad ?? startUp?.evidence.angle_rad ?? null;
-      instant = this.startingInstant(startUp?.columns ?? null, mechanism, share, angle ?? 0);
-      rest = {angle, stopped: share >= 1, text: restText(status, angle)};
+    this.notify();
+    if (missing.length) {
+      const stated = missing.map(({text, changes}) => ({text, changes}));
+      const outcome = await this.solver.ask('designs', {designs: stated, options});
+      if (outcome.kind !== 'done') return this.unsolved(state, outcome, origin);
+      missing.forEach((design, n) => this.keep(design, options, outcome.answer[n]!));
     }
-    const ghost = this.pinned?.peaks
-      ? {mechanism: this.pinned.mechanism, instant: instantAt(this.pinned.solved.columns, this.pinned.peaks, share)}
-      : null;
-    drawMechanism(picture, mechanism, instant, range, ghost, rest);
-    const scrub = byId<HTMLInputElement>('scrub');
-    if (document.activeElement !== scrub) scrub.value = String(Math.round(share * 1000));
+    const [current, ...pins] = wanted.map((design) => this.cache.get(identityOf(design, options)));
+    if (!current || pins.some((pin) => !pin)) throw new Error('more pins than designs are kept');
+    // Of a slider that moves every design is drawn, though the next one is asked for already.
+    this.shown = {...current, state, pins: pins as Computed[]};
+    if (state === this.state) {
+      this.work = 'solved';
+      this.good = state;
+    }
+    window.firstNumber ??= performance.now();
+    this.notify();
+    if (state !== this.state) return false;
+    this.settle = window.setTimeout(() => void this.settled(write), write ? 0 : 120);
+    this.rest();
+    return true;
   }
 
-  /** On the way to where it stops. */
-  private startingInstant(columns: Columns | null, mechanism: Mechanism, share: number, angle: number): Instant {
-    if (!columns || columns.time_s.length < 2) return atRest(mechanism, angle);
-    const time = columns.time_s,
-      now = share * time[time.length - 1];
-    let row = 1;
-    while (row < time.length - 1 && time[row] < now) ++row;
-    const part = Math.min(1, (now - time[row - 1]) / (time[row] - time[row - 1] || 1));
-    const theta =
-      columns.crank_angle_rad[row - 1] + part * (columns.crank_angle_rad[row] - columns.crank_angle_rad[row - 1]);
-    const instant = atRest(mechanism, theta);
-    if (mechanism.rotates) instant.strokeAngle = strokeAt(mechanism, theta);
-    return instant;
+  private unsolved(state: State, outcome: Exclude<Outcome<unknown>, {kind: 'done'}>, origin: string): false {
+    if (state !== this.state || outcome.kind === 'overtaken') return false;
+    if (outcome.kind === 'refused') {
+      this.history.remove(state);
+      void this.go(this.good, {from: 'browser'}).then(() => this.refuse(new Refused(outcome.problems), origin));
+    } else {
+      this.work = 'failed';
+      this.failure = outcome.why;
+      this.notify();
+      this.rest();
+    }
+    return false;
   }
 
-  /** After the last of a row of changes: derivatives, the link, the commands. */
-  private async settled() {
-    const state = this.state;
-    this.findEndurance();
-    byId('shell').textContent = shellCommand(state);
-    byId('python').textContent = pythonProgram(state);
-    linkOf(state).then((link) => {
-      if (state === this.state) history.replaceState(null, '', link);
-    });
-    byId('restore').toggleAttribute('disabled', Object.keys(state.design.changes).length === 0);
-    this.keysChanged();
-    const {values, solved} = this.current;
+  private keep(design: Design, options: RunOptions, computed: Computed) {
+    this.cache.set(identityOf(design, options), computed);
+    for (const oldest of this.cache.keys()) {
+      if (this.cache.size <= kept) break;
+      this.cache.delete(oldest);
+    }
+  }
+
+  /** Ends the computation of the state; what is shown stays, marked as that of another state. */
+  stop() {
+    this.solver.stop('stopped');
+  }
+  again() {
+    return this.solve('', true);
+  }
+
+  /** When nothing is being solved for the state. */
+  idle(): Promise<void> {
+    if (this.work !== 'solving') return Promise.resolve();
+    return new Promise((done) => this.idlers.push(done));
+  }
+  private rest() {
+    for (const done of this.idlers.splice(0)) done();
+  }
+
+  // ---- after the last of a row of changes: derivatives, endurance, the address
+
+  private async settled(write: boolean) {
+    const {state, shown} = this;
+    if (!shown || shown.state !== state) return;
+    void this.findEndurance(shown);
+    if (write) void this.writeAddress(state);
     const keys = this.core.tables.keys
-      .filter((k) => k.number && !k.whole && typeof values[k.key] === 'number' && values[k.key] !== 0)
+      .filter((k) => k.number && !k.whole && typeof shown.values[k.key] === 'number' && shown.values[k.key] !== 0)
       .map((k) => k.key);
     // Of a lift that is held there are no derivatives.
-    if (solved.report.status !== 'flapping' || state.hold === 'lift') return this.controls.sensitivities({});
-    const found = await this.background.gradients(
-      {text: this.stated.text, changes: {...this.stated.changes}},
-      keys,
-      runOptions(state),
-    );
-    if (!found) return;
-    const metric = (key: string) => this.core.tables.metrics.findIndex((m) => m.key === key);
-    const lift = metric('lift_mean_n'),
-      power = metric('power_electrical_w');
-    const sensitivities: Record<string, Sensitivity> = {};
-    for (const key of keys) {
-      const relative = (m: number, of: string) => {
-        const slope = found[key]?.[m],
-          value = numberOf(solved.report, of);
-        return typeof slope === 'number' && value !== null && value !== 0
-          ? (slope * (values[key] as number)) / value
-          : null;
-      };
-      sensitivities[key] = {lift: relative(lift, 'lift_mean_n'), power: relative(power, 'power_electrical_w')};
-    }
-    this.controls.sensitivities(sensitivities);
+    if (shown.solved.report.status !== 'flapping' || !shown.solved.reached || state.hold === 'lift')
+      return this.controls.sensitivities({});
+    const {text, changes} = state.design;
+    const found = await this.slopes.ask('gradients', {stated: {text, changes}, keys, options: runOptions(state)});
+    if (state !== this.state) return;
+    this.controls.sensitivities(found.kind === 'done' ? this.relative(shown, keys, found.answer) : {});
     document.body.dataset.sensitivities = 'shown';
   }
 
+  private relative(shown: Shown, keys: string[], found: Record<string, (number | null)[]>) {
+    const slopeOf = (metric: string) => {
+      const column = this.core.tables.metrics.findIndex((m) => m.key === metric),
+        size = numberOf(shown.solved.report, metric);
+      return (key: string) => {
+        const slope = found[key]?.[column],
+          value = shown.values[key];
+        return typeof slope === 'number' && typeof value === 'number' && size ? (slope * value) / size : null;
+      };
+    };
+    const lift = slopeOf('lift_mean_n'),
+      power = slopeOf('power_electrical_w');
+    const sensitivities: Record<string, Sensitivity> = {};
+    for (const key of keys) sensitivities[key] = {lift: lift(key), power: power(key)};
+    return sensitivities;
+  }
+
   /** How long it hovers and how long the battery lasts: some forty designs of the vehicle, beside the page. */
-  private async findEndurance() {
-    const current = this.current;
-    if (!String(current.values['supply.type']).startsWith('battery') || current.solved.report.status !== 'flapping')
-      return;
-    const stated = {text: this.stated.text, changes: {...this.stated.changes}};
-    const found = await this.background.report(stated, {...runOptions(this.state), endurance: true});
-    if (!found || this.current !== current) return;
-    current.solved.report.hover_s = found.hover_s;
-    current.solved.report.endurance_s = found.endurance_s;
-    this.showAllMetrics();
+  private async findEndurance(shown: Shown) {
+    const {report} = shown.solved;
+    if (!String(shown.values['supply.type']).startsWith('battery') || report.status !== 'flapping') return;
+    if (report.endurance_s !== null) return;
+    const {text, changes} = shown.state.design;
+    const options = {...runOptions(shown.state), endurance: true};
+    const found = await this.flights.ask('report', {stated: {text, changes}, options});
+    if (found.kind !== 'done') return;
+    report.hover_s = found.answer.hover_s;
+    report.endurance_s = found.answer.endurance_s;
+    if (this.shown === shown) this.notify();
   }
 
-  private showAllMetrics() {
-    const {report} = this.current.solved;
-    showMetrics(byId('metrics'), this.core.tables.metrics, report, this.pinned?.solved.report ?? null);
+  /** A step of the history is a step of the browser's too, so that Back undoes it. */
+  private async writeAddress(state: State) {
+    const step = this.step;
+    this.step = false;
+    const link = await linkOf(state, shipped);
+    const entry = {session, id: ++this.written};
+    this.visited.set(entry.id, state);
+    this.visited.delete(entry.id - longest);
+    if (step) history.pushState(entry, '', link);
+    else history.replaceState(entry, '', link);
+    document.body.dataset.address = String(entry.id);
   }
 
-  // ---- comparison and playback
-
-  pinnedReport() {
-    return this.pinned?.solved.report ?? null;
-  }
-
-  pin() {
-    this.open({...this.state, pinned: {...this.state.design, changes: {...this.state.design.changes}}});
-    this.showPins();
-  }
-  unpin() {
-    this.open({...this.state, pinned: null});
-    this.showPins();
-  }
-  showPins() {
-    byId('unpin').hidden = !this.state.pinned;
-  }
-
-  pause() {
-    this.play(false);
-  }
-  play(on: boolean) {
-    this.playback.playing = on;
-    if (on && !this.hasCycle() && this.playback.share >= 1) this.playback.share = 0;
-    const button = byId('play');
-    button.textContent = on ? 'pause' : 'play';
-    button.setAttribute('aria-pressed', String(on));
+  /** The state of an entry of the browser's history, where this page made it. */
+  visitedState(entry: unknown): State | null {
+    const {session: of, id} = (entry ?? {}) as {session?: unknown; id?: unknown};
+    return of === session && typeof id === 'number' ? (this.visited.get(id) ?? null) : null;
   }
 }

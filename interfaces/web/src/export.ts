@@ -15,7 +15,10 @@ const drawn = [
   'stroke-width',
   'stroke-dasharray',
   'stroke-linecap',
+  'stroke-linejoin',
   'opacity',
+  'fill-opacity',
+  'paint-order',
   'font-size',
   'font-family',
   'font-weight',
@@ -27,7 +30,7 @@ export function standalone(picture: SVGSVGElement): string {
   const [, , width, height] = (picture.getAttribute('viewBox') ?? '0 0 400 300').split(' ').map(Number);
   const originals = picture.querySelectorAll('*');
   copy.querySelectorAll('*').forEach((element, n) => {
-    const style = getComputedStyle(originals[n]);
+    const style = getComputedStyle(originals[n]!);
     for (const name of drawn) element.setAttribute(name, style.getPropertyValue(name));
     element.removeAttribute('class');
   });
@@ -58,10 +61,9 @@ export async function savePng(name: string, picture: SVGSVGElement, scale = 2) {
 
 /** The cycle as `wingbeat run --waveforms` writes it. */
 export function cycleCsv(columns: Columns): string {
-  const names = Object.keys(columns);
-  const rows = [names.join(',')];
-  for (let row = 0; row < columns[names[0]].length; ++row) {
-    rows.push(names.map((name) => (Number.isFinite(columns[name][row]) ? String(columns[name][row]) : '')).join(','));
-  }
-  return rows.join('\n') + '\n';
+  const names = Object.keys(columns),
+    all = Object.values(columns);
+  const written = (x: number | undefined) => (Number.isFinite(x) ? String(x) : '');
+  const rows = Array.from(all[0] ?? [], (_, row) => all.map((numbers) => written(numbers[row])).join(','));
+  return [names.join(','), ...rows].join('\n') + '\n';
 }

@@ -21,7 +21,7 @@ export function scaleFor(size: number, unit: string): Scale {
   if (unit === 'degC') return {factor: 1, unit: '°C'};
   if (unit === '1' || unit === '') return {factor: 1, unit: ''};
   if (!prefixed.has(unit) || !(Math.abs(size) > 0)) return {factor: 1, unit};
-  const [value, prefix] = prefixes.find(([p]) => Math.abs(size) >= p * 0.99999) ?? prefixes[prefixes.length - 1];
+  const [value, prefix] = prefixes.find(([p]) => Math.abs(size) >= p * 0.99995) ?? prefixes[prefixes.length - 1]!;
   return {factor: 1 / value, unit: prefix + unit};
 }
 
@@ -52,7 +52,7 @@ export function readable(x: number | null | undefined, unit: string, figures = 4
 /** kg m2 as kg m². */
 export function shownUnit(unit: string): string {
   return unit
-    .replace(/([a-zA-Z])(\d)/g, (_, letter, digit) => letter + '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(digit)])
+    .replace(/([a-zA-Z])(\d)/g, (_, letter: string, digit) => letter + '⁰¹²³⁴⁵⁶⁷⁸⁹'[Number(digit)])
     .replace('ohm', 'Ω');
 }
 

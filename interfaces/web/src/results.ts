@@ -20,13 +20,33 @@ export const numberOf = (report: Report | null | undefined, key: string) => {
   return typeof value === 'number' ? value : null;
 };
 
+/** Less than this share of the largest quantity of its kind is rounding: solutions are accurate to 1e-6. */
+const rounding = 1e-9;
+const kinds = [/^power_/, /^current_/, /^lift_(mean|peak)/];
+
+/** numberOf() with 0 in place of what is left of a mean that vanishes, such as the current of a direct drive. */
+export function significant(report: Report | null | undefined, key: string): number | null {
+  const value = numberOf(report, key),
+    kind = kinds.find((k) => k.test(key));
+  if (!report || value === null || !kind) return value;
+  const sizes = Object.keys(report)
+    .filter((other) => kind.test(other))
+    .map((other) => Math.abs(numberOf(report, other) ?? 0));
+  return Math.abs(value) < rounding * Math.max(...sizes) ? 0 : value;
+}
+
 export function showHeadline(parent: HTMLElement, solved: Solved, metrics: Quantity[]) {
   const report = solved.report,
     unit = (key: string) => metrics.find((m) => m.key === key)?.unit ?? '';
-  const status = report.status ?? 'undecided';
+  const status = solved.reached ? (report.status ?? 'undecided') : 'out of reach';
   const outside = typeof report.domain === 'string' && report.domain !== 'inside';
   const parts: Node[] = [
-    html('p', {class: `status status-${status}`}, html('strong', {}, status), ` ${report.status_detail}`),
+    html(
+      'p',
+      {class: `status status-${status.replaceAll(' ', '-')}`},
+      html('strong', {}, status),
+      ` ${report.status_detail}`,
+    ),
   ];
   if (outside)
     parts.push(
@@ -40,10 +60,19 @@ export function showHeadline(parent: HTMLElement, solved: Solved, metrics: Quant
   for (const warning of report.warnings) parts.push(html('p', {class: 'status warning'}, warning));
   const list = html('dl', {});
   for (const [key, name] of headline) {
-    const value = numberOf(report, key);
+    const value = significant(report, key);
     const shown =
       key === 'efficiency_system' && value !== null ? `${digits(100 * value, 4)} %` : readable(value, unit(key));
-    list.append(html('div', {}, html('dt', {}, name), html('dd', {id: `value-${key}`}, shown)));
+    const meaning = metrics.find((m) => m.key === key)?.meaning ?? '';
+    list.append(
+      html(
+        'div',
+        {},
+        html('dt', {}, name),
+        html('dd', {id: `value-${key}`}, shown),
+        html('dd', {class: 'meaning'}, meaning),
+      ),
+    );
   }
   parent.replaceChildren(...parts, list);
 }
@@ -63,31 +92,43 @@ export function showBalance(table: HTMLTableElement, balance: Balance | null) {
   }
 }
 
-/** Every metric; beside the pinned design's where there is one. */
-export function showMetrics(table: HTMLTableElement, metrics: Quantity[], report: Report, pinned: Report | null) {
-  const head = ['metric', ...(pinned ? ['A', 'B', 'difference'] : ['value'])];
+/** Every metric; beside those of pinned designs where there are some, with the difference to the first of them. */
+export function showMetrics(
+  table: HTMLTableElement,
+  metrics: Quantity[],
+  report: Report,
+  pins: {name: string; report: Report}[],
+) {
+  const first = pins[0];
+  const head = first
+    ? ['metric', ...pins.map((pin) => pin.name), 'present', `present against ${first.name}`]
+    : ['metric', 'value'];
   const body = html('tbody', {});
   for (const metric of metrics) {
-    const b = numberOf(report, metric.key),
-      a = numberOf(pinned, metric.key);
-    if (b === null && a === null) continue;
-    const row = html('tr', {}, html('th', {scope: 'row', title: metric.key}, metric.meaning));
-    if (pinned) row.append(html('td', {}, readable(a, metric.unit)));
-    row.append(html('td', {}, readable(b, metric.unit)));
-    if (pinned) {
-      const change = a !== null && b !== null && a !== 0 ? 100 * (b / a - 1) : null;
-      row.append(
-        html(
-          'td',
-          {class: change === null ? '' : change > 0 ? 'more' : change < 0 ? 'less' : ''},
-          change === null ? '–' : `${change >= 0 ? '+' : '−'}${digits(Math.abs(change), 3)} %`,
-        ),
-      );
-    }
-    body.append(row);
+    const value = significant(report, metric.key),
+      others = pins.map((pin) => significant(pin.report, metric.key));
+    if ([value, ...others].every((x) => x === null)) continue;
+    body.append(
+      html(
+        'tr',
+        {},
+        html('th', {scope: 'row', title: metric.key}, metric.meaning),
+        ...[...others, value].map((x) => html('td', {}, readable(x, metric.unit))),
+        ...(first ? [difference(others[0] ?? null, value)] : []),
+      ),
+    );
   }
   table.replaceChildren(
     html('thead', {}, html('tr', {}, ...head.map((text) => html('th', {scope: 'col'}, text)))),
     body,
+  );
+}
+
+function difference(from: number | null, to: number | null): HTMLElement {
+  const change = from !== null && to !== null && from !== 0 ? 100 * (to / from - 1) : null;
+  return html(
+    'td',
+    {class: change === null ? '' : change > 0 ? 'more' : change < 0 ? 'less' : ''},
+    change === null ? '–' : `${change >= 0 ? '+' : '−'}${digits(Math.abs(change), 3)} %`,
   );
 }

@@ -1,27 +1,23 @@
-// What the page shows: a vehicle with changed values, a pinned one to compare with, the conditions; and its link.
-import type {RunOptions} from './core';
-import {shipped} from './vehicles';
+// What the page shows: a vehicle with changed values, pinned ones to compare with, the conditions. A state is never
+// changed; another one takes its place, and the history keeps them.
+import type {RunOptions, Stated} from './core';
 
-export interface Design {
-  name: string;
-  text: string;
-  changes: Record<string, string>;
+export interface Design extends Stated {
+  readonly name: string;
 }
+export type Hold = 'voltage' | 'frequency' | 'lift';
+export const conditions = ['air', 'vacuum', 'wingless'] as const;
 export interface State {
-  design: Design;
-  pinned: Design | null;
-  condition: string;
-  hold: 'voltage' | 'frequency' | 'lift';
-  held: number; // [Hz] or [N]
+  readonly design: Design;
+  readonly pins: readonly Design[];
+  readonly condition: (typeof conditions)[number];
+  readonly hold: Hold;
+  readonly held: number; // [Hz] or [N]
 }
+export const heldUnit = {frequency: 'Hz', lift: 'N'} as const;
+export const maxPins = 4;
 
-export function initialState(): State {
-  return {design: shippedDesign('friction2022'), pinned: null, condition: 'air', hold: 'voltage', held: 0};
-}
-
-export function shippedDesign(name: string): Design {
-  return {name, text: shipped[name], changes: {}};
-}
+export const stateFor = (design: Design): State => ({design, pins: [], condition: 'air', hold: 'voltage', held: 0});
 
 export function runOptions(state: State): RunOptions {
   const options: RunOptions = {condition: state.condition};
@@ -30,68 +26,80 @@ export function runOptions(state: State): RunOptions {
   return options;
 }
 
-// ---- the link: designs by name and changes; a file of the user's own comes along compressed
+/** Equal for designs that are computed alike under the same options. */
+export const identityOf = (design: Design, options: RunOptions) =>
+  JSON.stringify([design.text, Object.entries(design.changes).sort(), options]);
 
-async function through(bytes: Uint8Array, stream: CompressionStream | DecompressionStream): Promise<Uint8Array> {
-  const piped = new Blob([bytes as BlobPart]).stream().pipeThrough(stream);
-  return new Uint8Array(await new Response(piped).arrayBuffer());
-}
-async function packed(text: string): Promise<string> {
-  const bytes = await through(new TextEncoder().encode(text), new CompressionStream('deflate-raw'));
-  return btoa(String.fromCharCode(...bytes))
-    .replaceAll('+', '-')
-    .replaceAll('/', '_')
-    .replaceAll('=', '');
-}
-async function unpacked(text: string): Promise<string> {
-  const bytes = Uint8Array.from(atob(text.replaceAll('-', '+').replaceAll('_', '/')), (c) => c.charCodeAt(0));
-  return new TextDecoder().decode(await through(bytes, new DecompressionStream('deflate-raw')));
+/** "friction2022, supply.voltage 2.5 V, vacuum": what a picture is of. */
+export function describeDesign(design: Design, condition = 'air', without: readonly string[] = []): string {
+  const changes = Object.entries(design.changes).filter(([key]) => !without.includes(key));
+  return [
+    design.name,
+    ...changes.slice(0, 4).map(([key, value]) => `${key} ${value}`),
+    ...(changes.length > 4 ? [`${changes.length - 4} more changes`] : []),
+    ...(condition === 'air' ? [] : [condition]),
+  ].join(', ');
 }
 
-async function write(design: Design, prefix: string, into: URLSearchParams) {
-  into.set(`${prefix}vehicle`, design.name);
-  if (shipped[design.name] !== design.text) into.set(`${prefix}file`, await packed(design.text));
-  for (const [key, value] of Object.entries(design.changes)) into.append(`${prefix}set`, `${key}=${value}`);
-}
+/** States in the order in which they were left; those undone can be redone until another one is committed. */
+export class History<S> {
+  private entries: {state: S; tag: string; time: number}[];
+  private index = 0;
 
-async function read(from: URLSearchParams, prefix: string): Promise<Design | null> {
-  const name = from.get(`${prefix}vehicle`);
-  const file = from.get(`${prefix}file`);
-  const text = file ? await unpacked(file) : name ? shipped[name] : undefined;
-  if (!name || text === undefined) return null;
-  const changes: Record<string, string> = {};
-  for (const change of from.getAll(`${prefix}set`)) {
-    const equals = change.indexOf('=');
-    if (equals > 0) changes[change.slice(0, equals)] = change.slice(equals + 1);
+  constructor(
+    first: S,
+    private readonly longest = 500,
+    private readonly together = 1000, // [ms]
+  ) {
+    this.entries = [{state: first, tag: '', time: -Infinity}];
   }
-  return {name, text, changes};
-}
 
-export async function linkOf(state: State): Promise<string> {
-  const link = new URLSearchParams();
-  await write(state.design, '', link);
-  if (state.pinned) await write(state.pinned, 'a.', link);
-  if (state.condition !== 'air') link.set('condition', state.condition);
-  if (state.hold !== 'voltage') link.set(state.hold, String(state.held));
-  return `#${link}`;
-}
+  get present(): S {
+    return this.entries[this.index]!.state;
+  }
+  get canUndo() {
+    return this.index > 0;
+  }
+  get canRedo() {
+    return this.index + 1 < this.entries.length;
+  }
 
-/** The state of a link; what it does not say, or says in a way that cannot be read, is the initial state's. */
-export async function stateOf(hash: string): Promise<State> {
-  const state = initialState();
-  if (hash.length < 2) return state;
-  const link = new URLSearchParams(hash.slice(1));
-  try {
-    state.design = (await read(link, '')) ?? state.design;
-    state.pinned = await read(link, 'a.');
-  } catch {
-    return state;
+  /** True for a new step; changes with the same tag in quick succession, such as presses of an arrow key, are one. */
+  commit(state: S, tag = '', time = Date.now()): boolean {
+    const last = this.entries[this.index]!;
+    if (state === last.state) return false;
+    this.entries.length = this.index + 1;
+    if (tag && tag === last.tag && time - last.time < this.together) {
+      this.entries[this.index] = {state, tag, time};
+      return false;
+    }
+    this.entries.push({state, tag, time});
+    if (this.entries.length > this.longest) this.entries.shift();
+    this.index = this.entries.length - 1;
+    return true;
   }
-  const condition = link.get('condition');
-  if (condition === 'vacuum' || condition === 'wingless') state.condition = condition;
-  for (const hold of ['frequency', 'lift'] as const) {
-    const held = Number(link.get(hold) ?? NaN);
-    if (held > 0) Object.assign(state, {hold, held});
+
+  undo(): S {
+    if (this.canUndo) --this.index;
+    return this.present;
   }
-  return state;
+  redo(): S {
+    if (this.canRedo) ++this.index;
+    return this.present;
+  }
+
+  /** Goes to the entry of the state, or commits it. */
+  visit(state: S) {
+    const found = this.entries.findIndex((entry) => entry.state === state);
+    if (found >= 0) this.index = found;
+    else this.commit(state);
+  }
+
+  /** Takes out a state that turned out to be impossible. */
+  remove(state: S) {
+    const found = this.entries.findIndex((entry) => entry.state === state);
+    if (found < 0 || this.entries.length === 1) return;
+    this.entries.splice(found, 1);
+    if (this.index >= found) this.index = Math.max(0, this.index - 1);
+  }
 }

@@ -1,40 +1,72 @@
-// Trends over one key and maps over two, computed beside the page; a click takes the design.
-import type {Background} from './background';
+// Trends over one key and maps over two, computed beside the page. A picture belongs to the state in which it was asked
+// for; a click takes a design of that state.
 import {sweepRange} from './controls';
+import {type Columns, Refused, type Values} from './core';
 import {byId, html} from './dom';
+import {Channel} from './engine';
 import type {Explorer} from './explorer';
 import {type Axis, drawMap, drawTrend, type Outcome} from './pictures/study_plots';
 import {exact, readable} from './quantities';
+import {describeDesign, identityOf, type State} from './state';
 
 const trendDesigns = 200,
-  mapSide = 40;
+  mapSide = 40,
+  deadline = 60_000; // without progress [ms]
 /** Metrics of which less is better. */
 const wantedLow = /^power_|^current_|loss|temperature|rod_force/;
 
-export class Studies {
-  private running = false;
+interface Study {
+  of: State;
+  values: Values;
+  across: Axis;
+  up: Axis | null;
+  statuses: string[];
+  columns: Columns;
+  took: number;
+}
 
-  constructor(
-    private readonly explorer: Explorer,
-    private readonly background: Background,
-  ) {
+export class Studies {
+  private readonly channel: Channel;
+  private study: Study | null = null;
+  private offered = '';
+  private marked = '';
+
+  constructor(private readonly explorer: Explorer) {
+    this.channel = new Channel(explorer.compiled, deadline, 0);
     byId('study').addEventListener('click', () => {
-      this.compute();
+      if (this.channel.busy) this.channel.stop('stopped');
+      else void this.compute();
     });
     byId<HTMLSelectElement>('metric').append(
       ...explorer.core.tables.metrics.map((m) =>
         html('option', {value: m.key, ...(m.key === 'lift_mean_n' ? {selected: true} : {})}, m.meaning),
       ),
     );
+    byId('metric').addEventListener('change', () => this.draw());
+    for (const id of ['across', 'up']) byId(id).addEventListener('change', () => this.showWhose());
+    byId('take-best').addEventListener('click', () => {
+      const best = this.study && bestOf(this.outcome(this.study), this.isLow());
+      if (this.study && best !== null) this.pick(this.study, best);
+    });
+    explorer.watch(() => this.follow());
+    this.follow();
+  }
+
+  private follow() {
     this.offerKeys();
+    if (!this.study) return;
+    // Only the mark of the present design moves while a slider does.
+    const mark = JSON.stringify(this.present(this.study));
+    if (mark !== this.marked) this.draw();
+    else this.showWhose();
   }
 
   /** The numbers that the vehicle has. */
-  offerKeys() {
-    const values = this.explorer.current.values;
-    const names = this.explorer.core.tables.keys
-      .filter((k) => k.number && typeof values[k.key] === 'number')
-      .map((k) => k.key);
+  private offerKeys() {
+    const {values, core} = this.explorer;
+    const names = core.tables.keys.filter((k) => k.number && typeof values[k.key] === 'number').map((k) => k.key);
+    if (names.join() === this.offered) return;
+    this.offered = names.join();
     for (const [id, first] of [
       ['across', 'supply.voltage'],
       ['up', ''],
@@ -45,124 +77,172 @@ export class Studies {
         ...(id === 'up' ? [html('option', {value: ''}, 'nothing else: a trend')] : []),
         ...names.map((name) => html('option', {value: name}, name)),
       );
-      select.value = names.includes(chosen) ? chosen : id === 'up' ? '' : names[0];
+      select.value = names.includes(chosen) ? chosen : id === 'up' ? '' : (names[0] ?? '');
     }
   }
 
   private axis(name: string, count: number): Axis | null {
-    const key = this.explorer.core.tables.keys.find((k) => k.key === name);
-    const value = this.explorer.current.values[name];
-    const range = key && typeof value === 'number' ? sweepRange(key, value, this.explorer.typicalOf(name)) : null;
+    const {core, values, typical} = this.explorer;
+    const key = core.tables.keys.find((k) => k.key === name);
+    const value = values[name];
+    const range = key && typeof value === 'number' ? sweepRange(key, value, typical[name] ?? 0) : null;
     if (!key || !range) return null;
     const numbers = Array.from({length: count}, (_, n) => range[0] + ((range[1] - range[0]) * n) / (count - 1));
     return {name, unit: key.unit ?? '1', values: key.whole ? [...new Set(numbers.map(Math.round))] : numbers};
   }
 
-  async compute() {
-    if (this.running) return;
-    const {explorer} = this;
-    const across = byId<HTMLSelectElement>('across').value,
-      up = byId<HTMLSelectElement>('up').value;
+  // ---- computing
+
+  private async compute() {
+    const {explorer} = this,
+      {state, values} = explorer;
+    const first = byId<HTMLSelectElement>('across').value,
+      second = byId<HTMLSelectElement>('up').value;
     const note = byId('study-note'),
-      progress = byId<HTMLProgressElement>('progress');
-    const a = this.axis(across, up ? mapSide : trendDesigns),
-      u = up ? this.axis(up, mapSide) : null;
-    if (!a || (up && !u) || across === up) {
-      note.textContent =
-        across === up
-          ? 'choose two different keys'
-          : 'this key is 0 here, and so in every vehicle that comes along: give it a value first';
-      return;
+      progress = byId<HTMLProgressElement>('progress'),
+      button = byId('study');
+    if (first === second) return (note.textContent = 'choose two different keys');
+    const across = this.axis(first, second ? mapSide : trendDesigns),
+      up = second ? this.axis(second, mapSide) : null;
+    if (!across || (second && !up)) {
+      return (note.textContent = 'this key is 0 here, and so in every vehicle that comes along: give it a value first');
     }
-    const designs = u ? u.values.flatMap((y) => a.values.flatMap((x) => [x, y])) : a.values;
-    const stated = {text: explorer.state.design.text, changes: {...explorer.state.design.changes}};
-    this.running = true;
+    const designs = up ? up.values.flatMap((y) => across.values.flatMap((x) => [x, y])) : across.values;
     progress.hidden = false;
-    const begun = performance.now();
-    try {
-      const found = await this.background.ensemble(
-        stated,
-        u ? [across, up] : [across],
-        Float64Array.from(designs),
-        {condition: explorer.state.condition},
-        u ? 80 : 50,
-        (share) => {
-          progress.value = share;
-        },
-      );
-      this.show(a, u, found.statuses, found.columns, stated, performance.now() - begun);
-    } catch (error) {
-      note.textContent = String(error);
-    } finally {
-      this.running = false;
-      progress.hidden = true;
-    }
+    progress.value = 0;
+    button.textContent = 'stop';
+    const outcome = await this.channel.ask(
+      'ensemble',
+      {
+        stated: {text: state.design.text, changes: state.design.changes},
+        keys: up ? [first, second] : [first],
+        values: Float64Array.from(designs),
+        options: {condition: state.condition},
+        chunk: up ? 80 : 50,
+      },
+      (share: number) => {
+        progress.value = share;
+      },
+    );
+    progress.hidden = true;
+    button.textContent = 'compute';
+    if (outcome.kind === 'done') {
+      this.study = {of: state, values, across, up, ...outcome.answer, took: outcome.took};
+      this.draw();
+      document.body.dataset.study = `${designs.length / (up ? 2 : 1)} ${Math.round(outcome.took)}`;
+    } else if (outcome.kind === 'refused') note.textContent = new Refused(outcome.problems).message;
+    else if (outcome.kind === 'failed') note.textContent = `Not computed: ${outcome.why}.`;
   }
 
-  private show(
-    a: Axis,
-    u: Axis | null,
-    statuses: string[],
-    columns: Record<string, Float64Array>,
-    stated: {text: string; changes: Record<string, string>},
-    took: number,
-  ) {
-    const {explorer} = this;
-    const name = byId<HTMLSelectElement>('metric').value;
-    const metric = explorer.core.tables.metrics.find((m) => m.key === name)!;
-    const {status, domain} = columns,
-      hover = columns.lift_to_weight;
+  // ---- whose picture it is
+
+  private axesOf = ({across, up}: Study) => (up ? [across.name, up.name] : [across.name]);
+
+  /** The design of the page on the axes of the study, where it differs from the study's in nothing else. */
+  private present(study: Study): number[] | null {
+    const {state, values} = this.explorer,
+      axes = this.axesOf(study);
+    const rest = (s: State) => {
+      const changes = Object.fromEntries(Object.entries(s.design.changes).filter(([key]) => !axes.includes(key)));
+      return s.design.name + identityOf({...s.design, changes}, {condition: s.condition});
+    };
+    return rest(state) === rest(study.of) ? axes.map((key) => Number(values[key])) : null;
+  }
+
+  private showWhose() {
+    const {study} = this;
+    if (!study) return;
+    const present = this.present(study),
+      stale = byId('study-stale');
+    const chosen = [byId<HTMLSelectElement>('across').value, byId<HTMLSelectElement>('up').value].filter(Boolean);
+    const other = chosen.join() !== this.axesOf(study).join();
+    const of = describeDesign(study.of.design, study.of.condition, this.axesOf(study));
+    stale.hidden = present !== null && !other;
+    stale.textContent =
+      present === null
+        ? `Computed for ${of}, not for the design shown above. A click takes a design of this picture, all of it.`
+        : `Computed over ${this.axesOf(study).join(' and ')}; compute again for the keys chosen.`;
+    byId('study-picture')
+      .closest('figure')!
+      .classList.toggle('stale', present === null);
+  }
+
+  // ---- drawing
+
+  private isLow = () => wantedLow.test(byId<HTMLSelectElement>('metric').value);
+
+  private outcome({statuses, columns}: Study): Outcome {
+    const status = columns.status!,
+      domain = columns.domain!,
+      hover = columns.lift_to_weight!;
     const weighed = hover.some((x) => Number.isFinite(x));
     const feasible = Array.from(
       status,
-      (s, i) => statuses[s] === 'flapping' && domain[i] === 0 && (!weighed || hover[i] >= 1),
+      (s, i) => statuses[s] === 'flapping' && domain[i] === 0 && (!weighed || hover[i]! >= 1),
     );
-    const outcome: Outcome = {statuses, status, domain, metric: columns[name], feasible};
-    const value = (key: string) => explorer.current.values[key] as number;
-    const pick = (index: number) => {
-      const across = a.values[u ? index % a.values.length : index];
-      const changes: Record<string, string> = {[a.name]: exact(across)};
-      if (u) changes[u.name] = exact(u.values[Math.floor(index / a.values.length)]);
-      explorer.open({
-        ...explorer.state,
-        design: {...explorer.state.design, text: stated.text, changes: {...stated.changes, ...changes}},
-      });
+    return {
+      statuses,
+      status,
+      domain,
+      metric: columns[byId<HTMLSelectElement>('metric').value]!,
+      feasible,
+      weighed,
     };
+  }
+
+  private draw() {
+    const {study, explorer} = this;
+    if (!study) return;
+    const {across, up} = study;
+    const metric = explorer.core.tables.metrics.find((m) => m.key === byId<HTMLSelectElement>('metric').value)!;
+    const outcome = this.outcome(study),
+      best = bestOf(outcome, this.isLow()),
+      present = this.present(study);
+    this.marked = JSON.stringify(present);
     const picture = document.querySelector<SVGSVGElement>('#study-picture')!;
     picture.removeAttribute('hidden');
+    const title = describeDesign(study.of.design, study.of.condition, this.axesOf(study));
+    const shown = {title, metric: {name: metric.meaning, unit: metric.unit}, outcome, best, present};
+    const pick = (index: number) => this.pick(study, index);
+    if (up) drawMap(picture, across, up, shown, pick);
+    else drawTrend(picture, across, shown, pick);
+    byId('study-note').textContent = this.inWords(study, outcome, best, metric.unit);
+    byId('take-best').hidden = best === null;
+    this.showWhose();
+  }
+
+  private inWords(study: Study, outcome: Outcome, best: number | null, unit: string): string {
+    const {across, up, statuses} = study,
+      {status} = outcome;
     const count = (want: string) => status.reduce((n, s) => n + Number(statuses[s] === want), 0);
     const failing = statuses.filter((s) => s !== 'flapping' && count(s) > 0).map((s) => `${count(s)} ${s}`);
     const counts = [`${count('flapping')} flapping`, ...failing].join(', ');
-    let said = `${status.length} designs in ${Math.round(took)} ms at constant voltage: ${counts}.`;
-    if (!u) {
-      drawTrend(picture, {...a}, {name: metric.meaning, unit: metric.unit}, outcome, value(a.name), pick);
-      said += " Marks at the foot: no flapping. Dashed: outside the model's domain. Click to take a design.";
-    } else {
-      const best = bestOf(outcome, wantedLow.test(name));
-      drawMap(
-        picture,
-        a,
-        u,
-        {name: metric.meaning, unit: metric.unit},
-        outcome,
-        best,
-        [value(a.name), value(u.name)],
-        pick,
-      );
-      said += ` Outlined: inside the model's domain${weighed ? ' and lifting the weight' : ''}.`;
-      if (best === null) {
-        said += ' No design here is feasible.';
-      } else {
-        const place = [
-          `${a.name} ${readable(a.values[best % a.values.length], a.unit)}`,
-          `${u.name} ${readable(u.values[Math.floor(best / a.values.length)], u.unit)}`,
-        ].join(', ');
-        const aim = wantedLow.test(name) ? 'least' : 'most';
-        said += ` Best feasible (${aim}): ${readable(columns[name][best], metric.unit)} at ${place}.`;
-      }
-    }
-    byId('study-note').textContent = said;
-    document.body.dataset.study = `${status.length} ${Math.round(took)}`;
+    const said = [`${status.length} designs in ${Math.round(study.took)} ms at constant voltage: ${counts}.`];
+    if (up) said.push(`Outlined: inside the model's domain${outcome.weighed ? ' and lifting the weight' : ''}.`);
+    else said.push("Marks at the foot: no flapping. Dashed: outside the model's domain.");
+    said.push('Click to take a design.');
+    if (best === null) return [...said, 'No design here is feasible.'].join(' ');
+    const column = up ? best % across.values.length : best;
+    const values = [`${across.name} ${readable(across.values[column], across.unit)}`];
+    if (up) values.push(`${up.name} ${readable(up.values[Math.floor(best / across.values.length)], up.unit)}`);
+    const aim = this.isLow() ? 'least' : 'most';
+    said.push(`Best feasible (${aim}): ${readable(outcome.metric[best], unit)} at ${values.join(', ')}.`);
+    return said.join(' ');
+  }
+
+  /** Takes a design of the study: its vehicle, values, condition and voltage, whatever the page shows now. */
+  private pick({of, across, up}: Study, index: number) {
+    const {explorer} = this;
+    const width = across.values.length;
+    const changes = {[across.name]: exact(across.values[up ? index % width : index]!)};
+    if (up) changes[up.name] = exact(up.values[Math.floor(index / width)]!);
+    void explorer.go({
+      ...explorer.state,
+      design: explorer.changed(of.design, changes),
+      condition: of.condition,
+      hold: 'voltage',
+      held: 0,
+    });
   }
 }
 
@@ -170,7 +250,7 @@ function bestOf(outcome: Outcome, low: boolean): number | null {
   let best: number | null = null;
   outcome.metric.forEach((x, i) => {
     if (!outcome.feasible[i] || !Number.isFinite(x)) return;
-    if (best === null || (low ? x < outcome.metric[best] : x > outcome.metric[best])) best = i;
+    if (best === null || (low ? x < outcome.metric[best]! : x > outcome.metric[best]!)) best = i;
   });
   return best;
 }

@@ -1,200 +1,216 @@
-// Choosing, opening, saving and sharing vehicles, and the conditions of a run.
-import {Refused} from './core';
+// Choosing vehicles, motors and the conditions of a run; undo and redo; playback; what is copied.
+import {Refused, type Motor} from './core';
 import {byId, html} from './dom';
+import {pythonProgram, shellCommand} from './elsewhere';
 import type {Explorer} from './explorer';
-import {cycleCsv, download, savePng, saveSvg} from './export';
+import {linkOf} from './link';
 import {powerSeries} from './pictures/cycle_plots';
-import {exact} from './quantities';
-import {type State, shippedDesign} from './state';
-import {motorCatalogue, shipped} from './vehicles';
+import {exact, readable} from './quantities';
+import {type Design, heldUnit, type Hold, type State} from './state';
+import {isShipped, motorCatalogue, shipped, shippedDesign} from './vehicles';
 
-const si = {frequency: 'Hz', lift: 'N'} as const;
+/** Equal up to the rounding of texts. */
+const alike = (a: unknown, b: number) => typeof a === 'number' && Math.abs(a - b) <= 1e-12 * Math.abs(b);
 
 export class Toolbar {
+  private seen: State | null = null;
+  private heldRefused = false;
+  private motorsOf = '';
+  private motors: Motor[] = [];
+  private motorClock = 0;
+
   constructor(private readonly explorer: Explorer) {
-    this.vehicles();
+    this.vehicle();
+    this.motor();
     this.conditions();
-    this.files();
-    this.pictures();
+    this.steps();
     this.playback();
-    byId('pin').addEventListener('click', () => explorer.pin());
-    byId('unpin').addEventListener('click', () => explorer.unpin());
-    byId('restore').addEventListener('click', () =>
-      explorer.open({...explorer.state, design: {...explorer.state.design, changes: {}}}),
-    );
-    for (const button of document.querySelectorAll<HTMLButtonElement>('[data-copy]')) {
-      button.addEventListener('click', () => this.copy(byId(button.dataset.copy!).textContent ?? '', button));
-    }
-    byId('link').addEventListener('click', (e) => this.copy(location.href, e.currentTarget as HTMLElement));
-    byId('theme').addEventListener('click', () => {
-      const chosen = document.documentElement.dataset.theme;
-      const dark = chosen ? chosen === 'dark' : matchMedia('(prefers-color-scheme: dark)').matches;
-      document.documentElement.dataset.theme = dark ? 'light' : 'dark';
+    this.copying();
+    this.theme();
+    const abscissa = byId<HTMLSelectElement>('abscissa');
+    abscissa.addEventListener('change', () => {
+      explorer.views.abscissa = abscissa.value as 'time' | 'crank angle';
+      explorer.views.drawCycle();
     });
-    explorer.refreshTools = () => this.refresh();
+    byId('power-legend').append(...powerSeries.map((name, n) => html('b', {class: `label-${n}`}, name)));
+    explorer.watch(() => this.refresh());
     this.refresh();
   }
 
   /** Tools as the state has them. */
-  refresh() {
-    const {state} = this.explorer;
+  private refresh() {
+    const {explorer} = this,
+      {state} = explorer;
+    if (state === this.seen) return;
+    this.seen = state;
     const vehicle = byId<HTMLSelectElement>('vehicle');
-    if (!Array.from(vehicle.options).some((o) => o.value === state.design.name))
-      vehicle.append(html('option', {}, state.design.name));
+    const names = [...Object.keys(shipped), ...explorer.files.names];
+    if (!names.includes(state.design.name)) names.push(state.design.name);
+    if (names.length !== vehicle.options.length) {
+      vehicle.replaceChildren(...names.map((name) => html('option', {value: name}, name)));
+    }
     vehicle.value = state.design.name;
     byId<HTMLSelectElement>('condition').value = state.condition;
     byId<HTMLSelectElement>('hold').value = state.hold;
-    const held = byId<HTMLInputElement>('held');
-    held.hidden = state.hold === 'voltage';
-    held.value = state.hold === 'voltage' ? '' : `${exact(state.held)} ${si[state.hold]}`;
-    this.explorer.showPins();
-    this.motors();
+    byId('held').hidden = state.hold === 'voltage';
+    if (!this.heldRefused || state.hold === 'voltage') this.acceptHeld();
+    // A disabled button would lose the focus of who has just pressed it.
+    const enable = (id: string, on: boolean) => byId(id).setAttribute('aria-disabled', String(!on));
+    enable('undo', explorer.history.canUndo);
+    enable('redo', explorer.history.canRedo);
+    enable('restore', Object.keys(state.design.changes).length > 0);
+    byId('shell').textContent = shellCommand(state, isOwn(state.design));
+    byId('python').textContent = pythonProgram(state, isOwn(state.design));
+    clearTimeout(this.motorClock);
+    this.motorClock = window.setTimeout(() => this.showMotors(), this.motorsOf ? 150 : 0);
   }
 
-  private open(state: State) {
-    this.explorer.open(state);
-    this.refresh();
-  }
-
-  private vehicles() {
-    const select = byId<HTMLSelectElement>('vehicle');
-    select.append(...Object.keys(shipped).map((name) => html('option', {value: name}, name)));
+  private vehicle() {
+    const select = byId<HTMLSelectElement>('vehicle'),
+      {explorer} = this;
     select.addEventListener('change', () => {
-      this.open({
-        ...this.explorer.state,
-        design: select.value in shipped ? shippedDesign(select.value) : this.explorer.state.design,
-      });
+      const design = isShipped(select.value) ? shippedDesign(select.value) : explorer.files.design(select.value);
+      if (design) void explorer.go({...explorer.state, design});
     });
   }
 
-  /** The catalogue in this vehicle, at its gear ratio. */
-  private motors() {
+  // ---- motors of the catalogue in this vehicle, at its gear ratio
+
+  private motor() {
     const select = byId<HTMLSelectElement>('motor'),
       {explorer} = this;
-    const gear = explorer.current.values['motor.gear_ratio'];
-    let found: {model: string; refused: string | null; values: Record<string, number>}[] = [];
+    select.addEventListener('change', () => {
+      const motor = this.motors.find((m) => m.model === select.value);
+      if (motor) {
+        const values = Object.entries(motor.values).map(([key, value]) => [key, exact(value)]);
+        void explorer.change(Object.fromEntries(values) as Record<string, string>);
+      } else if (select.value === '') {
+        const keys = Object.keys(explorer.state.design.changes).filter((key) => key.startsWith('motor.'));
+        void explorer.change(Object.fromEntries(keys.map((key) => [key, ''])));
+      }
+    });
+  }
+
+  private showMotors() {
+    const select = byId<HTMLSelectElement>('motor'),
+      {explorer} = this,
+      {values, state} = explorer;
+    const of = JSON.stringify([state.design.text, Object.entries(values).filter(([key]) => key.startsWith('motor.'))]);
+    if (of === this.motorsOf) return;
+    this.motorsOf = of;
+    const gear = values['motor.gear_ratio'];
+    this.motors = [];
     try {
-      found = explorer.core.motors(explorer.stated, motorCatalogue, typeof gear === 'number' ? gear : 1);
+      this.motors = explorer.core.motors(state.design, motorCatalogue, typeof gear === 'number' ? gear : 1);
     } catch (error) {
       if (!(error instanceof Refused)) throw error;
     }
+    const changed = Object.keys(state.design.changes).some((key) => key.startsWith('motor.'));
+    const present = changed
+      ? this.motors.find(
+          (m) => !m.refused && Object.entries(m.values).every(([key, value]) => alike(values[key], value)),
+        )
+      : undefined;
     select.replaceChildren(
-      html('option', {value: ''}, 'as stated'),
-      ...found.map((m) =>
+      html('option', {value: ''}, 'as in the file'),
+      ...(changed && !present ? [html('option', {value: '-', disabled: true}, 'changed')] : []),
+      ...this.motors.map((m) =>
         html('option', {value: m.model, disabled: m.refused !== null, title: m.refused ?? ''}, m.model),
       ),
     );
-    select.onchange = () => {
-      const motor = found.find((m) => m.model === select.value);
-      if (motor)
-        explorer.change(Object.fromEntries(Object.entries(motor.values).map(([key, value]) => [key, exact(value)])));
-    };
+    select.value = present?.model ?? (changed ? '-' : '');
   }
+
+  // ---- conditions, and what is held
 
   private conditions() {
     const {explorer} = this;
     const condition = byId<HTMLSelectElement>('condition'),
       hold = byId<HTMLSelectElement>('hold'),
       held = byId<HTMLInputElement>('held');
-    condition.addEventListener('change', () => this.open({...explorer.state, condition: condition.value}));
+    condition.addEventListener('change', () => {
+      void explorer.go({...explorer.state, condition: condition.value as State['condition']});
+    });
     hold.addEventListener('change', () => {
-      const chosen = hold.value as State['hold'],
-        report = explorer.current.solved.report;
-      const value = chosen === 'frequency' ? report.frequency_hz : report.lift_mean_n;
-      this.open({
-        ...explorer.state,
-        hold: chosen,
-        held: typeof value === 'number' ? Number(value.toPrecision(4)) : chosen === 'frequency' ? 20 : 0.01,
-      });
+      const chosen = hold.value as Hold,
+        report = explorer.shown?.solved.report;
+      const value = chosen === 'frequency' ? report?.frequency_hz : report?.lift_mean_n;
+      const start = chosen === 'frequency' ? 20 : 0.01;
+      const number = typeof value === 'number' && value > 0 ? Number(value.toPrecision(4)) : start;
+      this.acceptHeld();
+      void explorer.go({...explorer.state, hold: chosen, held: number}, {origin: 'held'});
     });
-    held.addEventListener('change', () => {
-      const unit = si[explorer.state.hold as keyof typeof si],
-        text = held.value.trim();
-      const found = text.match(/^([\d.eE+-]+)\s*(\S*)$/);
-      const factors: Record<string, number> = {'': 1, [unit]: 1, mN: 1e-3, kHz: 1e3};
-      const factor = found && factors[found[2]];
-      if (found && factor && Number(found[1]) > 0) this.open({...explorer.state, held: Number(found[1]) * factor});
-      else this.refresh();
+    held.addEventListener('change', () => this.hold(held.value.trim()));
+    held.addEventListener('keydown', (event) => {
+      if (event.key === 'Escape') this.acceptHeld();
+    });
+    explorer.fields.set('held', {
+      complain: (text) => this.refuseHeld(text),
+      accept: () => this.acceptHeld(),
     });
   }
 
-  private files() {
+  /** A frequency or lift in any unit, as --frequency and --lift take it. */
+  private hold(text: string) {
     const {explorer} = this,
-      input = byId<HTMLInputElement>('file');
-    byId('open').addEventListener('click', () => input.click());
-    input.addEventListener('change', () => this.read(input.files));
-    document.addEventListener('dragover', (e) => {
-      e.preventDefault();
-      document.body.classList.add('dropping');
-    });
-    document.addEventListener('dragleave', () => document.body.classList.remove('dropping'));
-    document.addEventListener('drop', (e) => {
-      e.preventDefault();
-      document.body.classList.remove('dropping');
-      this.read(e.dataTransfer?.files ?? null);
-    });
-    byId('save').addEventListener('click', () => {
-      download(`${explorer.state.design.name}.toml`, explorer.core.edited(explorer.stated), 'application/toml');
-    });
-    byId('csv').addEventListener('click', () => {
-      if (explorer.hasCycle()) download('cycle.csv', cycleCsv(explorer.current.solved.columns), 'text/csv');
-    });
-  }
-
-  /** A vehicle file, with the tables that it names beside it. */
-  private async read(files: FileList | null) {
-    const all = Array.from(files ?? []),
-      vehicle = all.find((f) => f.name.endsWith('.toml'));
-    if (!vehicle) return;
-    const tables: Record<string, string> = {};
-    for (const file of all) if (file !== vehicle) tables[file.name] = await file.text();
+      {hold} = explorer.state;
+    if (hold === 'voltage') return;
     try {
-      const {toml} = this.explorer.core.read(await vehicle.text(), vehicle.name, tables);
-      this.open({...this.explorer.state, design: {name: vehicle.name.replace(/\.toml$/, ''), text: toml, changes: {}}});
+      const value = explorer.core.quantity(text, heldUnit[hold]);
+      if (!(value > 0 && Number.isFinite(value))) return this.refuseHeld(`expected a ${hold} above 0, got "${text}"`);
+      void explorer.go({...explorer.state, held: value}, {origin: 'held'});
     } catch (error) {
-      this.explorer.complain(error, true);
+      if (!(error instanceof Refused)) throw error;
+      this.refuseHeld(error.message);
     }
   }
 
-  private pictures() {
-    for (const figure of document.querySelectorAll<HTMLElement>('[data-picture]')) {
-      const name = figure.dataset.picture!,
-        picture = figure.querySelector('svg')!;
-      figure.append(
-        html(
-          'div',
-          {class: 'save'},
-          html('button', {type: 'button', 'aria-label': `${name} as SVG`, click: () => saveSvg(name, picture)}, 'SVG'),
-          html(
-            'button',
-            {
-              type: 'button',
-              'aria-label': `${name} as PNG`,
-              click: () => {
-                savePng(name, picture);
-              },
-            },
-            'PNG',
-          ),
-        ),
-      );
-    }
-    byId('power-legend').append(...powerSeries.map((name, n) => html('b', {class: `label-${n}`}, name)));
-    const abscissa = byId<HTMLSelectElement>('abscissa');
-    abscissa.addEventListener('change', () => {
-      this.explorer.abscissa = abscissa.value as 'time' | 'crank angle';
-      this.explorer.drawCycle();
+  private refuseHeld(text: string) {
+    const held = byId<HTMLInputElement>('held'),
+      {hold, held: value} = this.explorer.state;
+    this.heldRefused = true;
+    byId('held-note').textContent =
+      hold === 'voltage' ? text : `${text}. In use: ${readable(value, heldUnit[hold], 6)}`;
+    held.setAttribute('aria-invalid', 'true');
+  }
+
+  private acceptHeld() {
+    const held = byId<HTMLInputElement>('held'),
+      {hold, held: value} = this.explorer.state;
+    this.heldRefused = false;
+    byId('held-note').textContent = '';
+    held.removeAttribute('aria-invalid');
+    held.value = hold === 'voltage' ? '' : readable(value, heldUnit[hold], 6);
+  }
+
+  // ---- undo and redo
+
+  private steps() {
+    const {explorer} = this;
+    byId('undo').addEventListener('click', () => void explorer.undo());
+    byId('redo').addEventListener('click', () => void explorer.redo());
+    byId('restore').addEventListener('click', () => {
+      const {design} = explorer.state;
+      if (Object.keys(design.changes).length) void explorer.go({...explorer.state, design: {...design, changes: {}}});
+    });
+    document.addEventListener('keydown', (event) => {
+      const typing = event.target instanceof HTMLInputElement && event.target.type === 'text';
+      if (typing || !(event.ctrlKey || event.metaKey) || event.altKey) return;
+      const key = event.key.toLowerCase();
+      if (key !== 'z' && key !== 'y') return;
+      event.preventDefault();
+      void (key === 'y' || event.shiftKey ? explorer.redo() : explorer.undo());
     });
   }
 
   private playback() {
-    const {explorer} = this,
-      {playback} = explorer;
+    const {views} = this.explorer,
+      {playback} = views;
     const scrub = byId<HTMLInputElement>('scrub'),
       rate = byId<HTMLInputElement>('rate');
-    byId('play').addEventListener('click', () => explorer.play(!playback.playing));
+    byId('play').addEventListener('click', () => views.play(!playback.playing));
     scrub.addEventListener('input', () => {
-      explorer.pause();
+      views.pause();
       playback.show(Number(scrub.value) / 1000);
     });
     const slow = () => {
@@ -203,19 +219,54 @@ export class Toolbar {
     };
     rate.addEventListener('input', slow);
     slow();
-    explorer.play(playback.playing);
+    views.play(playback.playing);
   }
 
-  private async copy(text: string, button: HTMLElement) {
-    const label = button.textContent;
-    try {
-      await navigator.clipboard.writeText(text);
-      button.textContent = 'copied';
-    } catch {
-      button.textContent = 'not allowed here';
+  private copying() {
+    for (const button of document.querySelectorAll<HTMLButtonElement>('[data-copy]')) {
+      button.addEventListener('click', () => void copy(byId(button.dataset.copy!).textContent ?? '', button));
     }
-    setTimeout(() => {
-      button.textContent = label;
-    }, 1500);
+    byId('link').addEventListener('click', (event) => {
+      const button = event.currentTarget as HTMLElement;
+      void linkOf(this.explorer.state, shipped).then((link) => copy(location.href.replace(/#.*|$/, link), button));
+    });
   }
+
+  private theme() {
+    const root = document.documentElement,
+      storage = 'wingbeat-theme';
+    try {
+      const kept = localStorage.getItem(storage);
+      if (kept === 'light' || kept === 'dark') root.dataset.theme = kept;
+    } catch {
+      // Without storage the theme is the browser's.
+    }
+    byId('theme').addEventListener('click', () => {
+      const dark = root.dataset.theme
+        ? root.dataset.theme === 'dark'
+        : matchMedia('(prefers-color-scheme: dark)').matches;
+      root.dataset.theme = dark ? 'light' : 'dark';
+      try {
+        localStorage.setItem(storage, root.dataset.theme);
+      } catch {
+        // It lasts until the page is left.
+      }
+    });
+  }
+}
+
+/** A file of the user's own, which a command names by its file. */
+const isOwn = (design: Design) => shipped[design.name] !== design.text;
+
+async function copy(text: string, button: HTMLElement) {
+  const label = button.textContent;
+  try {
+    await navigator.clipboard.writeText(text);
+    button.textContent = 'copied';
+  } catch {
+    button.textContent = 'not allowed here';
+  }
+  setTimeout(() => {
+    button.textContent = label;
+  }, 1500);
 }

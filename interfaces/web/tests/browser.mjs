@@ -6,7 +6,7 @@ import {gzipSync} from 'node:zlib';
 import {chromium} from 'playwright-core';
 
 export const root = resolve(new URL('.', import.meta.url).pathname, '../../..');
-const built = join(root, 'build/explorer');
+const built = process.env.WINGBEAT_EXPLORER ?? join(root, 'build/explorer');
 const types = {'.html': 'text/html', '.js': 'text/javascript', '.css': 'text/css', '.wasm': 'application/wasm'};
 
 /** The site on a port of its own, compressed as hosts do it; `sent()` counts the bytes of bodies. */
@@ -53,7 +53,7 @@ export async function open(browser, url, options = {}) {
   });
   page.on('pageerror', (error) => problems.push(String(error)));
   await page.goto(url);
-  await page.waitForSelector('body[data-ready]', {timeout: 30000}).catch(async (error) => {
+  await page.waitForSelector('body[data-ready]', {timeout: 60_000}).catch(async (error) => {
     throw new Error(`${error.message}\n${problems.join('\n')}\n${await page.textContent('#message')}`);
   });
   return {page, context, problems};

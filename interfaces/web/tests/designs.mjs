@@ -1,7 +1,7 @@
 // Designs around the vehicles that come along: voltages, springs, friction, wings, cranks; locking ones among them.
 
 /** A sequence of numbers between 0 and 1, the same in every run. */
-function sequence(seed) {
+export function sequence(seed) {
   let state = seed;
   return () => (state = (state * 1664525 + 1013904223) % 4294967296) / 4294967296;
 }

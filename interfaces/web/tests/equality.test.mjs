@@ -20,7 +20,8 @@ const inPage = (list) =>
   page.evaluate(
     (all) =>
       all.map(({vehicle, changes, condition}) => {
-        const {core, shipped} = window.explorer;
+        const {core} = window.explorer,
+          {shipped} = window;
         try {
           const stated = {text: shipped[vehicle], changes};
           const {report} = core.solve(stated, {condition, endurance: true});
@@ -94,7 +95,8 @@ function compare({report: ours, resistance}, {report: theirs}, what, which = () 
 
 test('500 designs: statuses are equal, metrics to 1e-12', {timeout: 900_000}, async () => {
   const values = await page.evaluate(() => {
-    const {core, shipped} = window.explorer;
+    const {core} = window.explorer,
+      {shipped} = window;
     return Object.fromEntries(Object.entries(shipped).map(([name, text]) => [name, core.values({text, changes: {}})]));
   });
   const list = designs(500, values);

@@ -3,6 +3,7 @@ import {gzipSync} from 'node:zlib';
 import {readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 import {launch, open, root, serve, singleFile} from './browser.mjs';
+import {choose, compute} from './page_tools.mjs';
 
 const server = await serve(),
   browser = await launch();
@@ -20,6 +21,7 @@ const updates = await page.evaluate(async () => {
     const begun = performance.now();
     slider.value = String(400 + ((n * 7) % 400));
     slider.dispatchEvent(new Event('input'));
+    await window.explorer.idle();
     document.body.getBoundingClientRect(); // style and layout included
     times.push(performance.now() - begun);
   }
@@ -27,6 +29,36 @@ const updates = await page.evaluate(async () => {
   return {median: times[100], late: times[190]};
 });
 console.log(`slider to picture: median ${updates.median.toFixed(1)} ms, 95 % within ${updates.late.toFixed(1)} ms`);
+
+// Tasks of the main thread while absurd values, a trend and a map are computed.
+await page.evaluate(() => {
+  window.tasks = [];
+  new PerformanceObserver((list) => {
+    for (const {duration} of list.getEntries()) window.tasks.push(duration);
+  }).observe({type: 'longtask'});
+});
+for (const [vehicle, key, quantity] of [
+  ['friction2022', 'wing.inertia', '1e-15'],
+  ['friction2022', 'supply.voltage', '1e6 V'],
+  ['friction2022', 'motor.inertia', '1e6'],
+  ['robobee-piezo', 'supply.amplitude', '1e6 V'],
+  ['hawkmoth', 'aerodynamics.air_density', '1e9'],
+]) {
+  await page.evaluate(
+    ([name, changes]) => {
+      const {explorer, shipped} = window;
+      void explorer.go({...explorer.state, design: {name, text: shipped[name], changes}});
+    },
+    [vehicle, {[key]: quantity}],
+  );
+  await page.waitForTimeout(700);
+}
+await choose(page, '#vehicle', 'friction2022');
+await compute(page);
+await compute(page, {up: 'transmission.crank_radius'});
+const tasks = await page.evaluate(() => window.tasks);
+console.log(`main thread: ${tasks.length} tasks above 50 ms, the longest ${Math.max(0, ...tasks)} ms`);
+await page.selectOption('#up', '');
 
 const memory = async () => {
   const client = await context.newCDPSession(page);
@@ -37,8 +69,7 @@ const memory = async () => {
 const many = (count) =>
   page.evaluate(async (updates) => {
     for (let n = 0; n < updates; ++n) {
-      window.explorer.change({'supply.voltage': String(2.5 + (n % 200) / 200)}, false);
-      if (n % 50 === 0) await new Promise((resume) => setTimeout(resume));
+      await window.explorer.change({'supply.voltage': String(2.5 + (n % 200) / 200)}, {final: false});
     }
   }, count);
 await many(500);

@@ -7,6 +7,7 @@ import {join} from 'node:path';
 import {createRequire} from 'node:module';
 import {after, before, describe, test} from 'node:test';
 import {launch, open, serve, singleFile} from './browser.mjs';
+import {choose, compute, idle, openAll, report, type} from './page_tools.mjs';
 import {run} from './program.mjs';
 
 const axe = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
@@ -20,16 +21,6 @@ after(async () => {
   await browser.close();
   server.close();
 });
-
-const report = (page) => page.evaluate(() => window.explorer.current.solved.report);
-const type = async (page, key, text) => {
-  const field = page.locator(`#key-${key.replaceAll('.', '-')}`);
-  await field.evaluate((e) => {
-    for (let d = e.closest('details'); d; d = d.parentElement.closest('details')) d.open = true;
-  });
-  await field.fill(text);
-  await field.press('Enter');
-};
 
 for (const [name, url] of [
   ['hosted', () => server.url],
@@ -61,7 +52,9 @@ for (const [name, url] of [
       await type(page, 'supply.voltage', '3500 mV');
       assert.equal((await report(page)).voltage_v, 3.5);
       await type(page, 'supply.voltage', '3 parsnips');
-      const said = await page.locator('[data-key="supply.voltage"] .complaint').textContent();
+      const note = await page.locator('[data-key="supply.voltage"] .complaint').textContent();
+      const said = note.replace(/\. In use: 3\.5 V$/, '');
+      assert.notEqual(said, note);
       const {stderr} = await run('data/designs/friction2022.toml', '--set', 'supply.voltage=3 parsnips');
       assert.ok(said.length > 20 && stderr.includes(said), `${said} | ${stderr}`);
       assert.equal((await report(page)).voltage_v, 3.5);
@@ -73,11 +66,13 @@ for (const [name, url] of [
       await page.waitForFunction(() => document.querySelector('[data-key="supply.voltage"] .bars').title);
       const shown = Number((await bars.getAttribute('title')).match(/lift \+([\d.]+) %/)[1]);
       const slope = await page.evaluate(() => {
-        const {core, stated, current} = window.explorer;
+        const {core, state, shown} = window.explorer;
         const lift = (voltage) =>
-          core.solve({...stated, changes: {...stated.changes, 'supply.voltage': String(voltage)}}, {tolerance: 1e-10})
-            .report.lift_mean_n;
-        const v = current.values['supply.voltage'],
+          core.solve(
+            {...state.design, changes: {...state.design.changes, 'supply.voltage': String(voltage)}},
+            {tolerance: 1e-10},
+          ).report.lift_mean_n;
+        const v = shown.values['supply.voltage'],
           h = 1e-4 * v;
         return (((lift(v + h) - lift(v - h)) / (2 * h)) * v) / lift(v);
       });
@@ -85,23 +80,21 @@ for (const [name, url] of [
     });
 
     test('a choice that needs other keys gets their starting values', async () => {
-      await page.evaluate(() => {
-        for (const d of document.querySelectorAll('#controls details')) d.open = true;
-      });
-      await page.selectOption('#key-friction-type', 'none');
+      await openAll(page);
+      await choose(page, '#key-friction-type', 'none');
       assert.equal((await report(page)).power_friction_w, 0);
       await page.click('#restore');
     });
 
     test('a shared link gives the same numbers', async () => {
       await type(page, 'supply.voltage', '2.75 V');
-      await page.selectOption('#condition', 'vacuum');
+      await choose(page, '#condition', 'vacuum');
       await page.waitForFunction(() => location.hash.includes('2.75') && location.hash.includes('vacuum'));
       const other = await open(browser, page.url());
       assert.deepEqual(await report(other.page), await report(page));
       assert.deepEqual(other.problems, []);
       await other.context.close();
-      await page.selectOption('#condition', 'air');
+      await choose(page, '#condition', 'air');
     });
 
     test('the TOML saved runs in the program, and opens again', async () => {
@@ -130,20 +123,20 @@ for (const [name, url] of [
       const {stderr} = await run(file);
       const said = await page.textContent('#message');
       assert.ok(stderr.includes(said.split('\n')[0].replace('wrong.toml', '')), `${said} | ${stderr}`);
-      await page.selectOption('#vehicle', 'friction2022');
+      await choose(page, '#vehicle', 'friction2022');
       assert.ok(await page.locator('#message').isHidden());
     });
 
     test('a design that locks stops where it stops', async () => {
-      await page.selectOption('#vehicle', 'friction2022-springs');
+      await choose(page, '#vehicle', 'friction2022-springs');
       await type(page, 'supply.voltage', '0.8 V');
       const found = await report(page);
       assert.equal(found.status, 'locked');
       assert.match(await page.textContent('#mechanism .rest'), /locked, rests at 34\.5/);
       assert.match(await page.textContent('#headline'), /friction holds/);
-      await page.evaluate(() => window.explorer.playback.show(1));
+      await page.evaluate(() => window.explorer.views.playback.show(1));
       const end = await page.evaluate(() => {
-        const angles = window.explorer.current.startUp.columns.crank_angle_rad;
+        const angles = window.explorer.shown.startUp.columns.crank_angle_rad;
         return (angles[angles.length - 1] * 180) / Math.PI;
       });
       assert.ok(Math.abs(end - 34.524) < 0.1, String(end));
@@ -151,23 +144,24 @@ for (const [name, url] of [
     });
 
     test('A and B side by side', async () => {
-      await page.selectOption('#vehicle', 'friction2022');
+      await choose(page, '#vehicle', 'friction2022');
       await page.click('#pin');
-      await page.selectOption('#vehicle', 'friction2022-springs');
+      await idle(page);
+      await choose(page, '#vehicle', 'friction2022-springs');
       assert.ok((await page.locator('.curve.ghost').count()) >= 5);
       assert.equal(await page.locator('#mechanism .ghost').count(), 1);
       assert.match(await page.textContent('#metrics tr:has([title="lift_mean_n"])'), /\+33\.2 %/);
-      await page.click('#unpin');
+      await page.getByRole('button', {name: 'forget A'}).click();
+      await idle(page);
       assert.equal(await page.locator('.curve.ghost').count(), 0);
     });
 
     test('a trend of 200 designs, a map, and a click that takes a design', async () => {
-      await page.selectOption('#vehicle', 'friction2022');
-      await page.click('#study');
-      await page.waitForSelector('body[data-study^="200 "]');
-      await page.selectOption('#up', 'transmission.crank_radius');
-      await page.click('#study');
-      await page.waitForSelector('body[data-study^="1600 "]', {timeout: 60000});
+      await choose(page, '#vehicle', 'friction2022');
+      await compute(page);
+      assert.match(await page.getAttribute('body', 'data-study'), /^200 /);
+      await compute(page, {up: 'transmission.crank_radius'});
+      assert.match(await page.getAttribute('body', 'data-study'), /^1600 /);
       assert.match(await page.textContent('#study-note'), /flapping/);
       const before = (await report(page)).voltage_v;
       await page.locator('#study-picture .surface').click({position: {x: 300, y: 60}});
@@ -179,12 +173,12 @@ for (const [name, url] of [
     test('every vehicle, drive and motor', async () => {
       for (const vehicle of await page.locator('#vehicle option').evaluateAll((all) => all.map((o) => o.value))) {
         if (vehicle === name.split(' ')[0]) continue;
-        await page.selectOption('#vehicle', vehicle);
+        await choose(page, '#vehicle', vehicle);
         assert.equal((await report(page)).status, 'flapping', vehicle);
-        await page.evaluate(() => window.explorer.playback.show(0.3));
+        await page.evaluate(() => window.explorer.views.playback.show(0.3));
       }
-      await page.selectOption('#vehicle', 'friction2022');
-      await page.selectOption('#motor', {index: 2});
+      await choose(page, '#vehicle', 'friction2022');
+      await choose(page, '#motor', {index: 2});
       assert.equal(await page.locator('#message').isHidden(), true, await page.textContent('#message'));
       await page.click('#restore');
     });
@@ -215,7 +209,7 @@ for (const [name, url] of [
     test('the tour of six steps', async () => {
       await page.click('#tour');
       for (let step = 1; step <= 6; ++step) {
-        assert.equal(await page.evaluate(() => document.body.dataset.tour), String(step));
+        await page.waitForFunction((n) => document.body.dataset.tour === String(n), step);
         assert.doesNotMatch(await page.textContent('#tour-panel'), /NaN|undefined|–/);
         if (step < 6) await page.getByRole('button', {name: 'next'}).click();
       }

@@ -6,7 +6,7 @@ const server = await serve(),
   browser = await launch();
 const {page} = await open(browser, server.url, {reducedMotion: 'reduce', colorScheme: 'light'});
 await page.waitForSelector('body[data-sensitivities]');
-await page.evaluate(() => window.explorer.playback.show(0.18));
+await page.evaluate(() => window.explorer.views.playback.show(0.18));
 const png = (await page.screenshot()).toString('base64');
 const webp = await page.evaluate(async (data) => {
   const picture = new Image();

@@ -23,7 +23,7 @@ for (const width of [1440, 1024, 390]) {
     };
     // A picture of the whole page has in it what lies below the window.
     await page.addStyleTag({content: '.views > .wide { content-visibility: visible !important; }'});
-    await page.evaluate(() => window.explorer.playback.show(0.18));
+    await page.evaluate(() => window.explorer.views.playback.show(0.18));
     if (width === 1440) {
       await page.waitForTimeout(600);
       await page.screenshot({path: join(root, `build/explorer/screenshots/top-${theme}.png`)});
@@ -31,15 +31,15 @@ for (const width of [1440, 1024, 390]) {
     await shoot('start');
     await page.click('#pin');
     await page.selectOption('#vehicle', 'friction2022-springs');
-    await page.evaluate(() => window.explorer.playback.show(0.18));
+    await page.evaluate(() => window.explorer.views.playback.show(0.18));
     await page.selectOption('#up', 'transmission.crank_radius');
     await page.click('#study');
     await page.waitForSelector('body[data-study^="1600 "]', {timeout: 120000});
     await shoot('compare');
     await page.evaluate(() => {
-      window.explorer.unpin();
+      window.explorer.go({...window.explorer.state, pins: []});
       window.explorer.change({'supply.voltage': '0.8 V'});
-      window.explorer.playback.show(1);
+      return window.explorer.idle().then(() => window.explorer.views.playback.show(1));
     });
     await page.selectOption('#up', '');
     await page.click('#study');
@@ -48,7 +48,7 @@ for (const width of [1440, 1024, 390]) {
     if (width === 390 || theme === 'light') {
       for (const vehicle of ['two-wing-four-bar', 'two-wing-direct-hinge']) {
         await page.selectOption('#vehicle', vehicle);
-        await page.evaluate(() => window.explorer.playback.show(0.1));
+        await page.evaluate(() => window.explorer.views.playback.show(0.1));
         await shoot(vehicle);
       }
       await page.click('#tour');

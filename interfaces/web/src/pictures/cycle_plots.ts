@@ -4,6 +4,7 @@ import {line} from 'd3-shape';
 import type {Columns} from '../core';
 import {html, set, svg} from '../dom';
 import {digits, scaleFor, shownUnit, withMinus} from '../quantities';
+import {atShare, type Matched} from '../measured';
 import {extent, type Frame, numbersBelow, numbersBeside, placeOf, sayNothing} from './axes';
 
 interface Panel {
@@ -61,6 +62,8 @@ export class CyclePlots {
   private columns: Columns | null = null;
   private abscissa: Abscissa = 'time';
   private place = 0;
+  /** Where the pointer reads, whatever the mechanism shows. */
+  private reading: number | null = null;
 
   /** `scrub` receives the share of the cycle that the user points at. */
   constructor(parent: HTMLElement, scrub: (share: number) => void) {
@@ -83,14 +86,20 @@ export class CyclePlots {
         readout,
       );
       const figure = html('figure', {class: 'plot', 'data-picture': panel.id}, picture);
-      const point = (event: PointerEvent) => {
+      const share = (event: MouseEvent) => {
         const {x} = placeOf(event, picture, frame);
-        scrub(this.shareAt(Math.min(1, Math.max(0, (x - left) / (width - left - right)))));
+        return this.shareAt(Math.min(1, Math.max(0, (x - left) / (width - left - right))));
       };
-      picture.addEventListener('pointermove', (e) => point(e as PointerEvent));
-      picture.addEventListener('pointerdown', (e) => {
-        picture.setPointerCapture(e.pointerId);
-        point(e as PointerEvent);
+      // The pointer reads all panels at one instant; pressed, it moves the mechanism there.
+      picture.addEventListener('pointermove', (event) => {
+        if (event.buttons & 1) scrub(share(event));
+        else this.read(share(event));
+      });
+      picture.addEventListener('pointerleave', () => this.read(null));
+      picture.addEventListener('pointerdown', (event) => {
+        picture.setPointerCapture(event.pointerId);
+        this.read(null);
+        scrub(share(event));
       });
       parent.append(figure);
       return {panel, figure, picture, axes, curves, cursor, readout};
@@ -101,7 +110,13 @@ export class CyclePlots {
     return this.drawn.map((d) => [d.panel.id, d.picture]);
   }
 
-  draw(columns: Columns | null, ghost: Columns | null, abscissa: Abscissa, forceName: string) {
+  draw(
+    columns: Columns | null,
+    ghost: Columns | null,
+    abscissa: Abscissa,
+    forceName: string,
+    measured: Matched | null = null,
+  ) {
     this.columns = columns;
     this.abscissa = abscissa;
     for (const d of this.drawn) {
@@ -115,14 +130,22 @@ export class CyclePlots {
         d.readout.textContent = d.panel.title;
         continue;
       }
-      this.drawPanel(d, columns, ghost, shown, d.panel.id === 'force' ? forceName : d.panel.title);
+      this.drawPanel(d, columns, ghost, shown, d.panel.id === 'force' ? forceName : d.panel.title, measured);
     }
-    this.moveCursor(this.place);
+    this.showCursor();
   }
 
-  private drawPanel(d: Drawn, columns: Columns, ghost: Columns | null, shown: [string, string][], title: string) {
-    const all = shown.flatMap(([name]) => [columns[name], ...(ghost && finite(ghost[name]) ? [ghost[name]] : [])]);
-    const [low, high] = extent(...all) ?? [0, 0];
+  private drawPanel(
+    d: Drawn,
+    columns: Columns,
+    ghost: Columns | null,
+    shown: [string, string][],
+    title: string,
+    measured: Matched | null,
+  ) {
+    const points = shown.flatMap(([name]) => measured?.columns[name] ?? []);
+    const all = shown.flatMap(([name]) => [columns[name]!, ...(ghost && finite(ghost[name]) ? [ghost[name]] : [])]);
+    const [low, high] = extent(...all, ...points) ?? [0, 0];
     const scale = scaleFor(Math.max(Math.abs(low), Math.abs(high)), d.panel.unit);
     const y = scaleLinear(
       [Math.min(0, low) * scale.factor, Math.max(0, high) * scale.factor],
@@ -134,58 +157,78 @@ export class CyclePlots {
     numbersBelow(d.axes, frame, x, this.abscissa === 'time' ? x.ticks(5) : [0, 90, 180, 270, 360], 12);
     d.axes.append(
       svg('text', {x: left, y: 14, class: 'title'}, `${title}, ${shownUnit(scale.unit)}`),
+      ...(shown.length > 1 ? [legend(shown)] : []),
       svg('text', {x: width - right, y: height - 2, 'text-anchor': 'end'}, along.name),
     );
     shown.forEach(([name], n) => {
       const path = (from: Columns, axis: Float64Array) =>
         line<number>(
-          (_, i) => x(axis[i]),
+          (_, i) => x(axis[i]!),
           (v) => y(v * scale.factor),
-        )(Array.from(from[name])) ?? '';
+        )(Array.from(from[name]!)) ?? '';
       if (ghost && finite(ghost[name])) {
         const axis = this.abscissaOf(ghost);
         const stretched = axis.numbers.map((t) => (t * along.end) / axis.end);
         d.curves.append(svg('path', {class: `curve ghost series-${n}`, d: path(ghost, stretched)}));
       }
       d.curves.append(svg('path', {class: `curve series-${n}`, d: path(columns, along.numbers)}));
+      const marks = measured?.columns[name];
+      if (!marks) return;
+      let dots = '';
+      marks.forEach((v, row) => {
+        const at = atShare(along.numbers, measured.shares[row]!);
+        if (Number.isFinite(v) && Number.isFinite(at))
+          dots += `M${x(at).toFixed(1)},${y(v * scale.factor).toFixed(1)}h0`;
+      });
+      d.curves.append(svg('path', {class: `measured series-${n}`, d: dots}));
     });
   }
 
   private abscissaOf(columns: Columns) {
     const time = this.abscissa === 'time';
     const factor = time ? 1e3 : 180 / Math.PI;
-    const numbers = columns[time ? 'time_s' : 'crank_angle_rad'].map((t) => t * factor);
-    return {numbers, end: time ? numbers[numbers.length - 1] : 360, name: time ? 'time, ms' : 'crank angle, °'};
+    const numbers = columns[time ? 'time_s' : 'crank_angle_rad']!.map((t) => t * factor);
+    return {numbers, end: time ? numbers[numbers.length - 1]! : 360, name: time ? 'time, ms' : 'crank angle, °'};
   }
 
   /** The share of the cycle in time at a share of the horizontal axis. */
   private shareAt(along: number): number {
     if (!this.columns || this.abscissa === 'time') return along;
-    const angles = this.columns.crank_angle_rad;
+    const angles = this.columns.crank_angle_rad!;
     let row = 0;
-    while (row < angles.length - 1 && angles[row] < along * 2 * Math.PI) ++row;
+    while (row < angles.length - 1 && angles[row]! < along * 2 * Math.PI) ++row;
     return row / (angles.length - 1);
+  }
+
+  private read(share: number | null) {
+    this.reading = share;
+    this.showCursor();
   }
 
   /** Shows the values at a share of the cycle. */
   moveCursor(share: number) {
     this.place = share;
+    if (this.reading === null) this.showCursor();
+  }
+
+  private showCursor() {
     const columns = this.columns;
     if (!columns) return;
-    const row = Math.round(share * (columns.time_s.length - 1));
+    const row = Math.round((this.reading ?? this.place) * (columns.time_s!.length - 1));
     const along = this.abscissaOf(columns);
-    const x = left + ((width - left - right) * along.numbers[row]) / along.end;
+    const x = left + ((width - left - right) * along.numbers[row]!) / along.end;
     for (const d of this.drawn) {
       if (d.figure.hidden) continue;
       set(d.cursor, {x1: x, x2: x});
       const parts = d.panel.columns
         .filter(([name]) => finite(columns[name]))
         .map(([name], n) => {
-          const scale = scaleFor(columns[name][row], d.panel.unit);
+          const value = columns[name]![row]!,
+            scale = scaleFor(value, d.panel.unit);
           return svg(
             'tspan',
             {class: `label-${n}`, dx: n ? 6 : 0},
-            `${withMinus(digits(columns[name][row] * scale.factor, 3))} ${shownUnit(scale.unit)}`,
+            `${withMinus(digits(value * scale.factor, 3))} ${shownUnit(scale.unit)}`,
           );
         });
       d.readout.replaceChildren(...parts);
@@ -193,5 +236,13 @@ export class CyclePlots {
   }
 }
 
+/** The names of several curves in their colours, below the frame, so that a picture that is saved has them too. */
+const legend = (shown: [string, string][]) =>
+  svg(
+    'text',
+    {x: left, y: height - 2, class: 'names'},
+    ...shown.map(([, label], n) => svg('tspan', {class: `label-${n}`, ...(n ? {dx: 8} : {})}, label)),
+  );
+
 /** What the colours of the panel of powers mean. */
-export const powerSeries = panels[panels.length - 1].columns.map(([, label]) => label);
+export const powerSeries = panels[panels.length - 1]!.columns.map(([, label]) => label);

@@ -107,9 +107,9 @@ class Sketch {
     this.group.append(
       svg('path', {
         class: 'arrow torque',
-        d: `M${a}A${pixels},${pixels} 0 ${sweep > Math.PI ? 1 : 0} ${
+        d: `M${a.join()}A${pixels},${pixels} 0 ${sweep > Math.PI ? 1 : 0} ${
           turn > 0 ? 1 : 0
-        } ${b}M${barb(0.45)}L${b}L${barb(-0.45)}`,
+        } ${b.join()}M${barb(0.45)}L${b.join()}L${barb(-0.45)}`,
       }),
     );
   }
@@ -123,15 +123,15 @@ function interpolated(numbers: Float64Array, angle: number): number {
   const turns = angle / (2 * Math.PI),
     place = (turns - Math.floor(turns)) * (numbers.length - 1);
   const row = Math.min(numbers.length - 2, Math.floor(place));
-  return numbers[row] + (place - row) * (numbers[row + 1] - numbers[row]);
+  return numbers[row]! + (place - row) * (numbers[row + 1]! - numbers[row]!);
 }
 
 /** The stroke angle that the transmission gives at a crank angle. */
-export const strokeAt = (m: Mechanism, angle: number) => interpolated(m.columns.stroke_angle_rad, angle);
+export const strokeAt = (m: Mechanism, angle: number) => interpolated(m.columns.stroke_angle_rad!, angle);
 
 const jointAt = (m: Mechanism, name: string, angle: number): Point => [
-  interpolated(m.columns[`${name}_x`], angle),
-  interpolated(m.columns[`${name}_y`], angle),
+  interpolated(m.columns[`${name}_x`]!, angle),
+  interpolated(m.columns[`${name}_y`]!, angle),
 ];
 const between = (a: Point, b: Point, share: number): Point => [
   a[0] + share * (b[0] - a[0]),
@@ -141,7 +141,7 @@ const between = (a: Point, b: Point, share: number): Point => [
 /** Angles, of the crank or of a direct drive's stroke, at which the stroke ends. */
 function strokeEnds(m: Mechanism, range: [number, number]): number[] {
   if (!m.rotates) return range;
-  const stroke = m.columns.stroke_angle_rad;
+  const stroke = m.columns.stroke_angle_rad!;
   return [Math.min(...stroke), Math.max(...stroke)].map(
     (end) => (2 * Math.PI * stroke.indexOf(end)) / (stroke.length - 1),
   );
@@ -150,7 +150,7 @@ function strokeEnds(m: Mechanism, range: [number, number]): number[] {
 /** A sketch in which all that moves has room. */
 function roomFor(m: Mechanism, ends: number[], crank: number): Sketch {
   const turn = Array.from({length: 45}, (_, n) =>
-    m.rotates ? (2 * Math.PI * n) / 45 : between([ends[0], 0], [ends[1], 0], n / 44)[0],
+    m.rotates ? (2 * Math.PI * n) / 45 : between([ends[0]!, 0], [ends[1]!, 0], n / 44)[0],
   );
   const points = m.joints.flatMap((j) => turn.map((angle) => jointAt(m, j.name, angle)));
   const x = points.map((p) => p[0]),
@@ -281,19 +281,22 @@ export const peaksOf = (c: Columns): Peaks => ({
 
 /** The instant of a cycle at a share of its period. */
 export function instantAt(c: Columns, peaks: Peaks, share: number): Instant {
-  const place = share * (c.time_s.length - 1),
-    row = Math.min(c.time_s.length - 2, Math.floor(place));
-  const at = (numbers: Float64Array) => numbers[row] + (place - row) * (numbers[row + 1] - numbers[row]);
-  const of = (name: string, most: number) => (most > 0 ? at(c[name]) / most : 0);
+  const place = share * (c.time_s!.length - 1),
+    row = Math.min(c.time_s!.length - 2, Math.floor(place));
+  const at = (name: string) => {
+    const numbers = c[name]!;
+    return numbers[row]! + (place - row) * (numbers[row + 1]! - numbers[row]!);
+  };
+  const of = (name: string, most: number) => (most > 0 ? at(name) / most : 0);
   return {
-    crankAngle: at(c.crank_angle_rad),
-    strokeAngle: at(c.stroke_angle_rad),
+    crankAngle: at('crank_angle_rad'),
+    strokeAngle: at('stroke_angle_rad'),
     rodForce: of('rod_force_n', peaks.force),
     lift: of('lift_n', peaks.lift),
     motorTorque: of('motor_torque_nm', peaks.torque),
     friction: of('power_friction_w', peaks.friction),
-    angleOfAttack: at(c.angle_of_attack_deg),
-    strokeVelocity: at(c.flapping_velocity_rad_per_s),
+    angleOfAttack: at('angle_of_attack_deg'),
+    strokeVelocity: at('flapping_velocity_rad_per_s'),
   };
 }
 

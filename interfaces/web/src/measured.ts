@@ -1,0 +1,120 @@
+// A measured cycle beside the model's: columns named as in waveform files, over time or crank angle.
+import {dsvFormat} from 'd3-dsv';
+import type {Columns} from './core';
+
+export interface Measured {
+  name: string;
+  /** Equal lengths; NaN where a cell has no number. */
+  columns: Columns;
+  ignored: string[];
+}
+/** Where each row is in the model's cycle, 0 to 1, and how far its columns are from the model. */
+export interface Matched {
+  shares: Float64Array;
+  columns: Columns;
+  /** [s] added to the times of the file, so that deviations are least; null of crank angles. */
+  shift: number | null;
+  /** Root mean square, in the unit of the column. */
+  deviations: Record<string, number>;
+}
+
+const abscissae = ['time_s', 'crank_angle_rad'];
+
+/** Throws an Error that says what is missing. */
+export function readMeasured(name: string, text: string, known: readonly string[]): Measured {
+  const lines = text
+    .replace(/^\ufeff/, '')
+    .split(/\r?\n/)
+    .filter((line) => line.trim() && !line.startsWith('#'));
+  const head = lines[0] ?? '';
+  const separator = [';', '\t', ','].find((s) => head.includes(s)) ?? ',';
+  const rows = dsvFormat(separator).parse(lines.join('\n'));
+  const names = rows.columns.map((column) => column.trim());
+  const number = (cell: string | undefined) =>
+    cell?.trim() ? Number(cell.replace(separator === ';' ? ',' : /$^/, '.')) : NaN;
+  const columns: Columns = {};
+  names.forEach((column, n) => {
+    if (!known.includes(column)) return;
+    columns[column] = Float64Array.from(rows, (row) => number(row[rows.columns[n]!]));
+  });
+  const found = Object.keys(columns);
+  if (!found.some((column) => abscissae.includes(column)))
+    throw new Error(`${name}: a column time_s or crank_angle_rad is missing; the first line has ${names.join(', ')}`);
+  if (found.every((column) => abscissae.includes(column)))
+    throw new Error(`${name}: no column of a waveform file, such as current_a or lift_n, is among ${names.join(', ')}`);
+  if (rows.length < 2) throw new Error(`${name}: at least two rows of numbers are needed`);
+  return {name, columns, ignored: names.filter((column) => !known.includes(column))};
+}
+
+/** Linear between the rows of a cycle, at a share of its period. */
+export function atShare(numbers: Float64Array, share: number): number {
+  const place = (share - Math.floor(share)) * (numbers.length - 1),
+    row = Math.min(numbers.length - 2, Math.floor(place));
+  return numbers[row]! + (place - row) * (numbers[row + 1]! - numbers[row]!);
+}
+
+const turn = 2 * Math.PI;
+
+/** The share of the cycle at which the crank is at an angle. */
+function shareOfAngle(angles: Float64Array, angle: number): number {
+  const first = angles[0]!,
+    wanted = first + ((((angle - first) % turn) + turn) % turn);
+  let low = 0,
+    high = angles.length - 1;
+  while (high - low > 1) {
+    const middle = (low + high) >> 1;
+    if (angles[middle]! <= wanted) low = middle;
+    else high = middle;
+  }
+  return (low + (wanted - angles[low]!) / (angles[high]! - angles[low]! || 1)) / (angles.length - 1);
+}
+
+const meanSquare = (numbers: number[]) => numbers.reduce((sum, x) => sum + x * x, 0) / Math.max(1, numbers.length);
+
+/** The rows in the model's cycle; times are shifted as a whole so that the deviations are least. */
+export function match({columns}: Measured, cycle: Columns): Matched {
+  const names = Object.keys(columns).filter((name) => !abscissae.includes(name) && cycle[name]);
+  const deviationsAt = (shares: Float64Array, name: string) => {
+    const found: number[] = [];
+    columns[name]!.forEach((y, row) => {
+      if (Number.isFinite(y) && Number.isFinite(shares[row])) found.push(y - atShare(cycle[name]!, shares[row]!));
+    });
+    return found;
+  };
+  const time = columns.time_s,
+    period = cycle.time_s![cycle.time_s!.length - 1]!;
+  let shift: number | null = null;
+  let shares: Float64Array;
+  if (time) {
+    const at = (s: number) => time.map((t) => (t + s) / period - Math.floor((t + s) / period));
+    const sizes = new Map(names.map((name) => [name, meanSquare(Array.from(cycle[name]!)) || 1]));
+    const total = (s: number) => {
+      const trial = at(s);
+      return names.reduce((sum, name) => sum + meanSquare(deviationsAt(trial, name)) / sizes.get(name)!, 0);
+    };
+    shift = least(total, period);
+    shares = at(shift);
+  } else {
+    shares = columns.crank_angle_rad!.map((angle) => shareOfAngle(cycle.crank_angle_rad!, angle));
+  }
+  const deviations = Object.fromEntries(names.map((name) => [name, Math.sqrt(meanSquare(deviationsAt(shares, name)))]));
+  return {shares, columns, shift, deviations};
+}
+
+/** Where a periodic function is least: the best of equidistant points, then of ever finer ones around it. */
+function least(f: (s: number) => number, period: number): number {
+  let best = 0,
+    lowest = f(0),
+    width = period;
+  for (let level = 0; level < 4; ++level) {
+    const points = level === 0 ? 48 : 12,
+      centre = best;
+    for (let n = 0; n < points; ++n) {
+      const s = centre + width * ((n + 0.5) / points - 0.5),
+        value = f(s);
+      if (value < lowest) [best, lowest] = [s, value];
+    }
+    width = (2 * width) / points;
+  }
+  return best;
+}
