@@ -6,6 +6,9 @@ import {designs, sequence} from './designs.mjs';
 import {choose, compute, field, idle, openAll, report, type} from './page_tools.mjs';
 import {answer} from './program.mjs';
 
+/** 60 random edits, with `scripts/test-explorer --all` 300. */
+const edits = process.env.WINGBEAT_ALL ? 300 : 60;
+
 /** Without the animation, which nothing here is about. */
 const still = {reducedMotion: 'reduce'};
 let server, browser, page, context, problems;
@@ -183,14 +186,15 @@ test('a map can be stopped, and the page answers while one is computed', async (
   await done();
 });
 
-test('every vehicle and 300 random edits give the numbers of the program', {timeout: 600_000}, async () => {
+test('every vehicle and random edits give the numbers of the program', {timeout: 900_000}, async () => {
   const values = await page.evaluate(() =>
     Object.fromEntries(
       Object.entries(window.shipped).map(([name, text]) => [name, window.explorer.core.values({text, changes: {}})]),
     ),
   );
-  const list = designs(300 + Object.keys(values).length, values).slice(0, 300 + Object.keys(values).length);
+  const list = designs(edits + Object.keys(values).length, values);
   let refused = 0;
+  let ended = 0;
   for (const {vehicle, changes, condition} of list) {
     const {report: theirs} = await answer(vehicle, changes, condition);
     const ours = await page.evaluate(
@@ -208,6 +212,11 @@ test('every vehicle and 300 random edits give the numbers of the program', {time
       ++refused;
       continue;
     }
+    // What the program does not decide either may be ended at the page's deadline.
+    if (!ours && theirs.status === null) {
+      ++ended;
+      continue;
+    }
     assert.ok(ours, what);
     assert.equal(ours.status, theirs.status, what);
     for (const key of ['frequency_hz', 'lift_mean_n', 'power_electrical_w']) {
@@ -215,7 +224,8 @@ test('every vehicle and 300 random edits give the numbers of the program', {time
       else assert.ok(Math.abs(ours[key] - theirs[key]) <= 1e-8 * Math.abs(theirs[key]) + 1e-12, `${what}: ${key}`);
     }
   }
-  assert.ok(refused < 30);
+  assert.ok(refused <= 0.1 * list.length);
+  assert.ok(ended <= 0.02 * list.length);
   await done();
 });
 
