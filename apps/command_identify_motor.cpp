@@ -73,7 +73,7 @@ int run(const IdentifyMotorArguments& arguments) {
 }  // namespace
 
 void add_identify_motor(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("identify-motor", "Find the constants of a motor, thermal ones included");
+  CLI::App* command = program.add_subcommand("identify-motor", "Find a motor's constants, thermal ones included");
   const auto a = std::make_shared<IdentifyMotorArguments>();
   add_input(command, a->file, InputKind::datasheet, "datasheet", "Data sheet (TOML)", "DATASHEET");
   add_file(command, "-o,--output", a->output, ".toml", "Write the [motor] section of a vehicle file", "FILE.toml");

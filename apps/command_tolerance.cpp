@@ -111,7 +111,7 @@ int run(const ToleranceArguments& arguments) {
 }  // namespace
 
 void add_tolerance(CLI::App& program, Action& action) {
-  CLI::App* command = program.add_subcommand("tolerance", "Find how uncertain parameters affect a vehicle's metrics");
+  CLI::App* command = program.add_subcommand("tolerance", "Find how uncertain parameters affect the metrics");
   const auto a = std::make_shared<ToleranceArguments>();
   add_input(command, a->study, InputKind::study, "study", "Study file (TOML): vehicle, distributions", "STUDY");
   add_set(command, a->overrides);
