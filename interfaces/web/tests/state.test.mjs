@@ -247,6 +247,7 @@ test('from start to a saved file by the keyboard alone', async () => {
   const {voltage_v} = await report(page);
   assert.equal(voltage_v, 3.3);
   await tabTo('#across');
+  await page.keyboard.type('supply.voltage');
   await tabTo('#study');
   await page.keyboard.press('Enter');
   await page.waitForSelector('body[data-study]');
