@@ -2,7 +2,7 @@
 import assert from 'node:assert/strict';
 import {after, before, beforeEach, test} from 'node:test';
 import {launch, open, serve} from './browser.mjs';
-import {choose, field, fileOf, idle, openAll, report, type} from './page_tools.mjs';
+import {choose, compute, field, fileOf, idle, openAll, report, type} from './page_tools.mjs';
 import {answer} from './program.mjs';
 
 /** Without the animation, which nothing here is about. */
@@ -120,6 +120,15 @@ test('a measured cycle is drawn beside the model, with its deviation', async () 
   await done();
 });
 
+test('a map has a colour for each level of its scale', async () => {
+  await compute(page, {up: 'transmission.crank_radius'});
+  const fills = (part) => page.$$eval(part, (all) => [...new Set(all.map((e) => e.getAttribute('fill')))]);
+  const bands = await fills('#study-picture .bands path');
+  assert.ok(bands.length >= 5, `${bands.length} colours`);
+  assert.deepEqual(await fills('#study-picture rect[fill]'), bands);
+  await done();
+});
+
 test('?embed shows the pictures named and nothing else', async () => {
   const other = await open(browser, `${server.url}?embed=mechanism,lift#vehicle=hawkmoth`);
   const visible = await other.page.evaluate(() =>
@@ -154,6 +163,10 @@ test('on a phone the numbers stay in sight while a slider moves', async () => {
   assert.ok(box.y >= 0 && box.y + box.height < 200, JSON.stringify(box));
   const covers = await phone.page.evaluate(() => document.querySelector('#headline dl').offsetHeight);
   assert.ok(covers < 140, String(covers));
+  for (const key of await phone.page.locator('#hover-keys th').all()) {
+    const {width, height} = await key.boundingBox();
+    assert.ok(width > 4 * height, `a key of ${width} x ${height}`);
+  }
   await phone.context.close();
   await done();
 });

@@ -143,7 +143,7 @@ export function drawMap(
     rows = up.values.length;
   const cell: [number, number] = [(width - left - right) / columns, (height - top - bottom) / rows];
   const m = scaledOf(metric.name, metric.unit, largest(range));
-  const levels = scaleLinear(range).ticks(10),
+  const levels = scaleLinear(range, [0, 1]).ticks(10),
     bands = [-Infinity, ...levels.filter((level) => level > range[0] && level < range[1])];
   const colour = (band: number) => interpolateViridis(bands.length > 1 ? band / (bands.length - 1) : 0.5);
   picture.append(
