@@ -29,6 +29,8 @@ export class Studies {
   private readonly channel: Channel;
   private study: Study | null = null;
   private offered = '';
+  /** Keys that were chosen last, whether the present vehicle has them or not. */
+  private readonly wanted = {across: 'supply.voltage', up: ''};
   private marked = '';
 
   constructor(private readonly explorer: Explorer) {
@@ -43,7 +45,12 @@ export class Studies {
       ),
     );
     byId('metric').addEventListener('change', () => this.draw());
-    for (const id of ['across', 'up']) byId(id).addEventListener('change', () => this.showWhose());
+    for (const id of ['across', 'up'] as const) {
+      byId(id).addEventListener('change', () => {
+        this.wanted[id] = byId<HTMLSelectElement>(id).value;
+        this.showWhose();
+      });
+    }
     byId('take-best').addEventListener('click', () => {
       const best = this.study && bestOf(this.outcome(this.study), this.isLow());
       if (this.study && best !== null) this.pick(this.study, best);
@@ -67,17 +74,14 @@ export class Studies {
     const names = core.tables.keys.filter((k) => k.number && typeof values[k.key] === 'number').map((k) => k.key);
     if (names.join() === this.offered) return;
     this.offered = names.join();
-    for (const [id, first] of [
-      ['across', 'supply.voltage'],
-      ['up', ''],
-    ] as const) {
-      const select = byId<HTMLSelectElement>(id),
-        chosen = select.value || first;
+    for (const id of ['across', 'up'] as const) {
+      const select = byId<HTMLSelectElement>(id);
       select.replaceChildren(
         ...(id === 'up' ? [html('option', {value: ''}, 'nothing else: a trend')] : []),
         ...names.map((name) => html('option', {value: name}, name)),
       );
-      select.value = names.includes(chosen) ? chosen : id === 'up' ? '' : (names[0] ?? '');
+      const first = id === 'up' ? [''] : ['supply.amplitude', ...names];
+      select.value = [this.wanted[id], ...first].find((name) => name === '' || names.includes(name)) ?? '';
     }
   }
 

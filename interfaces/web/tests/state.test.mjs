@@ -229,6 +229,15 @@ test('every vehicle and random edits give the numbers of the program', {timeout:
   await done();
 });
 
+test('a vehicle without the key that was chosen for trends does not change the choice for others', async () => {
+  assert.equal(await page.inputValue('#across'), 'supply.voltage');
+  await choose(page, '#vehicle', 'direct-drive');
+  assert.equal(await page.inputValue('#across'), 'supply.amplitude');
+  await choose(page, '#vehicle', 'friction2022-springs');
+  assert.equal(await page.inputValue('#across'), 'supply.voltage');
+  await done();
+});
+
 test('from start to a saved file by the keyboard alone', async () => {
   const tabTo = async (selector) => {
     for (let n = 0; n < 200; ++n) {
@@ -247,7 +256,6 @@ test('from start to a saved file by the keyboard alone', async () => {
   const {voltage_v} = await report(page);
   assert.equal(voltage_v, 3.3);
   await tabTo('#across');
-  await page.keyboard.type('supply.voltage');
   await tabTo('#study');
   await page.keyboard.press('Enter');
   await page.waitForSelector('body[data-study]');
