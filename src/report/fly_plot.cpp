@@ -86,8 +86,21 @@ void plot_fly(const FlyReport& report, PlotFormat format, const std::filesystem:
   const std::vector<FlownPanel> panels = flown_panels(report);
   const std::vector<FlightRow>& rows = report.flight.rows;
   constexpr double left_inches = 0.52, right = 0.96;
+  constexpr double key_inches = left_inches + 1.35;
   const double left = left_inches / format.width, head = 0.28, foot = 0.42, each = 0.72, gap = 0.26;
-  const double inches = head + foot + (each + gap) * double(panels.size());
+  std::vector<Key> keys;
+  std::vector<double> tops;  // of the panels, from that of the page [in]
+  double inches = head;
+  for (const FlownPanel& panel : panels) {
+    std::vector<KeyEntry> names;
+    for (const FlownCurve& curve : panel.curves) {
+      if (!curve.name.empty()) names.push_back(line_key(curve.name, curve.line));
+    }
+    keys.emplace_back(std::move(names), right * format.width - key_inches);
+    tops.push_back(inches + std::max(gap, keys.back().height() + 0.1));
+    inches = tops.back() + each;
+  }
+  inches += foot;
   Figure figure(format, inches);
   figure.add("$flight << END\n");
   for (const FlightRow& row : rows) {
@@ -104,21 +117,14 @@ void plot_fly(const FlyReport& report, PlotFormat format, const std::filesystem:
   for (std::size_t p = 0; p < panels.size(); ++p) {
     const FlownPanel& panel = panels[p];
     if (p > 0) figure.next_panel();
-    const double top = 1.0 - (head + gap + (each + gap) * double(p)) / inches, bottom = top - each / inches;
+    const double top = 1.0 - tops[p] / inches, bottom = top - each / inches;
     const auto [low, high] = flown_range(panel, rows);
     const AxisMarks marks(low, high, each, true, false);
     figure.add("set tmargin at screen {}\nset bmargin at screen {}\n{}\n{}\n", top, bottom, marks.commands("y"),
                across.commands("x", p + 1 == panels.size()));
     figure.text(panel.title, style::heading_size, fmt::format("screen {},{} left", left, top + 0.09 / inches));
     axis_title(figure, panel.unit, style::text_size, each, 0.1 / format.width, 0.5 * (top + bottom));
-    std::vector<KeyEntry> names;
-    for (const FlownCurve& curve : panel.curves) {
-      if (!curve.name.empty()) names.push_back(line_key(curve.name, curve.line));
-    }
-    if (!names.empty()) {
-      const double from = left_inches + 1.35;
-      Key(names, right * format.width - from).draw(figure, from, inches * (1.0 - top) - 0.155);
-    }
+    keys[p].draw(figure, key_inches, tops[p] - keys[p].height() - 0.015);
     if (!panel.limits.empty()) {
       figure.text("limits dashed", style::text_size, fmt::format("screen {},{} right", right, top + 0.09 / inches));
     }
