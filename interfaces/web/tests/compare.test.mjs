@@ -1,28 +1,10 @@
 // Several designs compared, a design that hovers, measured cycles, pictures in other pages.
 import assert from 'node:assert/strict';
-import {after, before, beforeEach, test} from 'node:test';
-import {launch, open, serve} from './browser.mjs';
+import {test} from 'node:test';
+import {open} from './browser.mjs';
+import {browser, done, page, server} from './page_each.mjs';
 import {choose, compute, field, fileOf, idle, openAll, report, type} from './page_tools.mjs';
 import {answer} from './program.mjs';
-
-/** Without the animation, which nothing here is about. */
-const still = {reducedMotion: 'reduce'};
-let server, browser, page, context, problems;
-before(async () => {
-  server = await serve();
-  browser = await launch();
-});
-beforeEach(async () => {
-  ({page, context, problems} = await open(browser, server.url, still));
-});
-after(async () => {
-  await browser.close();
-  server.close();
-});
-const done = async () => {
-  assert.deepEqual(problems, []);
-  await context.close();
-};
 
 test('several pins, the difference to the first, swapped and forgotten; a link has them all', async () => {
   const first = await report(page);

@@ -1,32 +1,13 @@
 // One state with a history; solving that can be ended, and a page that answers meanwhile.
 import assert from 'node:assert/strict';
-import {after, before, beforeEach, test} from 'node:test';
-import {launch, open, serve} from './browser.mjs';
+import {test} from 'node:test';
 import {designs, sequence} from './designs.mjs';
+import {done, page} from './page_each.mjs';
 import {choose, compute, field, idle, openAll, report, type} from './page_tools.mjs';
 import {answer} from './program.mjs';
 
 /** 60 random edits, with `scripts/test-explorer --all` 300. */
 const edits = process.env.WINGBEAT_ALL ? 300 : 60;
-
-/** Without the animation, which nothing here is about. */
-const still = {reducedMotion: 'reduce'};
-let server, browser, page, context, problems;
-before(async () => {
-  server = await serve();
-  browser = await launch();
-});
-beforeEach(async () => {
-  ({page, context, problems} = await open(browser, server.url, still));
-});
-after(async () => {
-  await browser.close();
-  server.close();
-});
-const done = async () => {
-  assert.deepEqual(problems, []);
-  await context.close();
-};
 
 const text = (selector) => page.textContent(selector);
 const value = async (key) => {
