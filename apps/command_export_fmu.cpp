@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 struct ExportArguments {
   std::string vehicle, output, version = "2", kind = "both";
   std::vector<std::string> overrides;
-  bool sources = false, force = false;
+  bool sources = false, without_body = false, force = false;
 };
 
 std::string bytes_of(const fs::path& file) {
@@ -61,7 +61,8 @@ int run(const ExportArguments& arguments) {
   options.program_version = version;
   options.sources = arguments.sources;
   options.identifier = fmu::identifier_of(fs::path(arguments.output).stem().string());
-  const Design<double> design = read_design(arguments.vehicle, arguments.overrides);
+  Design<double> design = read_design(arguments.vehicle, arguments.overrides);
+  if (arguments.without_body) design.body = {};
   OutputFile output("-o", arguments.output, OutputRules{".fmu", arguments.force});
   const fmu::FmuContent content = fmu::fmu_content(design, options);
   const fs::path linux_binary = required_file("wingbeat-fmu.so", "the binary of all FMUs");
@@ -107,6 +108,7 @@ void add_export_fmu(CLI::App& program, Action& action) {
   add_choice<fmu::FmuKind>(command, "--kind", a->kind, "me (model exchange), cs (co-simulation) or both (default)",
                            "KIND");
   command->add_flag("--sources", a->sources, "The sources too, which gcc compiles by itself");
+  command->add_flag("--without-body", a->without_body, "The drive alone, its wings on a body at rest");
   add_force(*command, a->force);
   command->footer(
       "Example:\n  wingbeat export-fmu friction2022 -o flapper.fmu --fmi 3\n\n"

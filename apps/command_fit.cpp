@@ -112,7 +112,7 @@ void add_fit(CLI::App& program, Action& action) {
   add_input(command, a->file, InputKind::bench, "bench", "Bench file (TOML): vehicle, logs, free parameters", "BENCH");
   add_set(command, a->overrides);
   add_file(command, "-o,--output", a->output, ".toml",
-           "Write the fitted vehicle file, and FILE's .covariance.toml beside it", "FILE.toml");
+           "Write the fitted vehicle file, and FILE.covariance.toml in its folder", "FILE.toml");
   command->add_flag("--compare-friction", a->compare_friction, "Fit every friction law to the same data and rank them");
   command->add_flag("--no-profiles", a->no_profiles,
                     "Skip the likelihood profiles: intervals from standard errors only");

@@ -28,9 +28,9 @@ namespace wingbeat::app {
 namespace {
 
 const char* unreached_meaning(const Sweep& sweep) {
-  if (sweep.hold && is_lift(sweep.hold->held)) return "flapping, but without the lift asked for";
-  if (sweep.hold && sweep.hold->held == Held::power) return "flapping, but not on the power asked for";
-  return "flapping, but not at the frequency asked for";
+  if (sweep.hold && is_lift(sweep.hold->held)) return "flapping, but not at the requested lift";
+  if (sweep.hold && sweep.hold->held == Held::power) return "flapping, but not at the requested power";
+  return "flapping, but not at the requested frequency";
 }
 
 struct SweepArguments {
@@ -131,10 +131,10 @@ std::string summary(const Study& study, const SweepResult& result) {
   text += '\n';
   const char* const meanings[sweep_status_count] = {"",
                                                     "the motor never starts",
-                                                    "the crank comes to rest at an angle",
+                                                    "the crank comes to rest",
                                                     "the equations of motion lose their unique solution on the way",
                                                     unreached_meaning(sweep),
-                                                    "a parameter out of its range beside the others",
+                                                    "a parameter out of its range for the other parameters",
                                                     "start-up came to no end within the solvers' limits"};
   for (int s = 0; s < sweep_status_count; ++s) {
     const std::uint64_t n = digest.designs[std::size_t(s)];

@@ -1,6 +1,7 @@
-/* Measures the contrast of every text of the pages `names` in the themes that the system and the button give; what is
-below `required`, or not of that theme, stands in #found as JSON. docs/site/checks.py makes the page around it. */
-(async () => {
+/* Measures the contrast of every text of the pages in the frames, in the themes that the system and the button give;
+what is below `required`, or not of that theme, stands in #found as JSON. docs/site/checks.py makes the page with the
+frames, which has loaded when they have. */
+window.addEventListener("load", () => {
   const found = new Map();
   let texts = 0;
   const channels = text => {
@@ -40,11 +41,8 @@ below `required`, or not of that theme, stands in #found as JSON. docs/site/chec
     }
   };
   const system = location.hash.slice(1);
-  for (const name of names) {
-    const frame = document.body.appendChild(document.createElement("iframe"));
-    frame.style = "width: 1280px; height: 900px";
-    await new Promise(done => { frame.onload = done; frame.src = name; });
-    const window = frame.contentWindow, body = window.document.body;
+  for (const frame of document.querySelectorAll("iframe")) {
+    const name = frame.getAttribute("src"), window = frame.contentWindow, body = window.document.body;
     const turn = theme => {
       const dark = luminance(groundOf(window, body)) < 0.2;
       if (dark !== (theme === "dark")) found.set(name + theme, `${name} is not ${theme} on a ${system} system`);
@@ -54,9 +52,6 @@ below `required`, or not of that theme, stands in #found as JSON. docs/site/chec
     /* Of the button's three themes the second is the other one. */
     window.document.querySelector(".theme-toggle-content .theme-toggle").click();
     turn(system === "dark" ? "light" : "dark");
-    /* The next page begins with the theme of the system. */
-    window.localStorage.removeItem("theme");
-    frame.remove();
   }
   document.getElementById("found").textContent = JSON.stringify({ texts, found: [...found.values()] });
-})();
+});

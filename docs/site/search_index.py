@@ -6,8 +6,8 @@ import re
 headings = {"h1", "h2", "h3", "h4"}
 # Without end tag.
 void = {"area", "base", "br", "col", "embed", "hr", "img", "input", "link", "meta", "source", "track", "wbr"}
-# Tables of names: each row is a section of its own, found by its name.
-tables = {"metrics.html", "vehicle-file.html", "waveforms.html"}
+# Pages of named entries, with the tag of an entry: each is a section of its own, found by its name.
+lists = {"metrics.html": "tr", "vehicle-file.html": "tr", "waveforms.html": "tr", "bibliography.html": "li"}
 silent = {"script", "style", "svg", "noscript", "nav", "button", "form"}
 
 
@@ -23,11 +23,11 @@ def kind_of(page):
 
 
 class Sections(html.parser.HTMLParser):
-    """Title and sections of a page: [heading, anchor, text]; rows of tables are sections where `rows`."""
+    """Title and sections of a page: [heading, anchor, text]; what stands in the tag `row_tag` is one, too."""
 
-    def __init__(self, text, rows=False):
+    def __init__(self, text, row_tag=None):
         super().__init__()
-        self.rows, self.row, self.in_name = rows, None, False
+        self.row_tag, self.row, self.in_name = row_tag, None, False
         self.stack = []      # [tag, whether it is left out]
         self.anchors = []    # ids of the sections that are open, with their depth
         self.sections, self.inside, self.in_heading = [], False, None
@@ -48,7 +48,7 @@ class Sections(html.parser.HTMLParser):
         self.stack.append((tag, hidden or bool(self.stack and self.stack[-1][1])))
         if tag == "section" and attributes.get("id"):
             self.anchors.append((len(self.stack), attributes["id"]))
-        if self.rows and self.inside and tag == "tr" and self.sections:
+        if self.inside and tag == self.row_tag and self.sections:
             self.row = ["", self.sections[-1][1], ""]
         self.in_name = self.in_name or tag == "code" and self.row is not None and not self.row[0]
         if self.inside and tag in headings:
@@ -66,7 +66,7 @@ class Sections(html.parser.HTMLParser):
             pass
         if tag == "code":
             self.in_name = False
-        if tag == "tr" and self.row is not None:
+        if tag == self.row_tag and self.row is not None:
             heading = self.sections[-1]
             # A row without a name belongs to the section.
             if self.row[0]:
@@ -113,7 +113,7 @@ def entries(site):
         page = path.relative_to(site).as_posix()
         if page in ("search.html", "genindex.html"):
             continue
-        found = Sections(path.read_text(errors="replace"), page in tables)
+        found = Sections(path.read_text(errors="replace"), lists.get(page))
         title = tidy(found.title)
         for heading, anchor, text in found.sections:
             if heading or tidy(text):

@@ -45,6 +45,30 @@ source and which no browser loads from a file. */
     requestAnimationFrame(() => { asked = false; mark(); });
   }, { passive: true });
   mark();
+
+  /* Keys in tables may break behind dots and underscores. */
+  const walk = (node, change) => {
+    for (const child of [...node.childNodes]) child.nodeType === Node.TEXT_NODE ? change(child) : walk(child, change);
+  };
+  for (const code of document.querySelectorAll("article td code"))
+    if (code.textContent.length > 12)
+      walk(code, text => {
+        const parts = text.data.split(/(?<=[._/])/);
+        text.replaceWith(...parts.flatMap((part, n) => n ? [document.createElement("wbr"), part] : [part]));
+      });
+  /* Tables of sentences become lists on a phone (site.css), with the name of its column before each cell. */
+  for (const table of document.querySelectorAll("article table.docutils")) {
+    const names = [...table.querySelectorAll("thead th")].map(head => head.textContent.trim());
+    const cells = [...table.querySelectorAll("tbody td")];
+    if (!names.some(name => name) || !cells.some(cell => cell.textContent.length > 45)) continue;
+    table.classList.add("stacked");
+    for (const cell of cells) {
+      const name = names[cell.cellIndex];
+      if (!cell.textContent.trim()) cell.replaceChildren();
+      else if (cell.cellIndex && name && names.length > 2) cell.dataset.label = name;
+    }
+  }
+
   /* The sidebar shows where this page stands. */
   const here = document.querySelector(".sidebar-tree .current-page");
   const scroll = document.querySelector(".sidebar-scroll");

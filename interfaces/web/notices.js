@@ -3,6 +3,26 @@
 import {existsSync, readFileSync, readdirSync} from 'node:fs';
 import {join} from 'node:path';
 
+/** The licence of a module that states MIT and its authors in package.json, without a file of it. */
+function mit(path) {
+  const {license, author, contributors = []} = JSON.parse(readFileSync(join(path, 'package.json'), 'utf8'));
+  const names = [author, ...contributors].map((who) => who?.name).filter(Boolean);
+  if (license !== 'MIT' || names.length === 0) throw new Error(`${path} has no licence file`);
+  return `Copyright (c) ${[...new Set(names)].join(', ')}\n\n${mitText}`;
+}
+const mitText = `Permission is hereby granted, free of charge, to any person obtaining a copy of this software and associated
+documentation files (the "Software"), to deal in the Software without restriction, including without limitation the
+rights to use, copy, modify, merge, publish, distribute, sublicense, and/or sell copies of the Software, and to permit
+persons to whom the Software is furnished to do so, subject to the following conditions:
+
+The above copyright notice and this permission notice shall be included in all copies or substantial portions of the
+Software.
+
+THE SOFTWARE IS PROVIDED "AS IS", WITHOUT WARRANTY OF ANY KIND, EXPRESS OR IMPLIED, INCLUDING BUT NOT LIMITED TO THE
+WARRANTIES OF MERCHANTABILITY, FITNESS FOR A PARTICULAR PURPOSE AND NONINFRINGEMENT. IN NO EVENT SHALL THE AUTHORS OR
+COPYRIGHT HOLDERS BE LIABLE FOR ANY CLAIM, DAMAGES OR OTHER LIABILITY, WHETHER IN AN ACTION OF CONTRACT, TORT OR
+OTHERWISE, ARISING FROM, OUT OF OR IN CONNECTION WITH THE SOFTWARE OR THE USE OR OTHER DEALINGS IN THE SOFTWARE.`;
+
 /** Modules of package-lock.json that are no tools of the build. */
 function modules() {
   const {packages} = JSON.parse(readFileSync('package-lock.json', 'utf8'));
@@ -10,8 +30,8 @@ function modules() {
     .filter(([path, entry]) => path && !entry.dev)
     .map(([path, {version}]) => {
       const file = readdirSync(path).find((name) => /^licen[cs]e/i.test(name));
-      if (!file) throw new Error(`${path} has no licence file`);
-      return `${path.replace('node_modules/', '')} ${version}\n\n${readFileSync(join(path, file), 'utf8').trim()}`;
+      const text = file ? readFileSync(join(path, file), 'utf8').trim() : mit(path);
+      return `${path.replace('node_modules/', '')} ${version}\n\n${text}`;
     });
 }
 
@@ -74,4 +94,40 @@ export function notices() {
 /** That of CMakeLists.txt. */
 export function version() {
   return readFileSync('../../CMakeLists.txt', 'utf8').match(/project\(wingbeat VERSION (\S+)/)[1];
+}
+
+/** The DOI of the software in CITATION.cff, or null where it has none. */
+export function doi() {
+  return readFileSync('../../CITATION.cff', 'utf8').match(/^doi: *"?([^"\s]+)/m)?.[1] ?? null;
+}
+
+/** The values of data/published/friction2022.toml: a metric of one of its designs, or of two of them as a ratio. */
+export function published() {
+  const text = readFileSync('../../data/published/friction2022.toml', 'utf8');
+  const [head, ...blocks] = text.split(/^\[\[/m);
+  const designs = Object.fromEntries(
+    [...head.matchAll(/^(\w+) = "\.\.\/designs\/(.+)\.toml"/gm)].map(([, name, file]) => [name, file]),
+  );
+  return blocks
+    .filter((block) => block.startsWith('value]]'))
+    .map((block) => {
+      const of = (name) => block.match(new RegExp(`^${name} = "(.*)"`, 'm'))?.[1] ?? null;
+      const ratio = [...(block.match(/^ratio = (.*)/m)?.[1] ?? '').matchAll(/"(\w+)"/g)].map(
+        ([, name]) => designs[name],
+      );
+      const value = of('published') ?? of('change');
+      if (!of('metric') || !value || !(designs[of('design')] || ratio.length === 2))
+        throw new Error(`data/published/friction2022.toml: a value is not understood: ${block}`);
+      return {
+        metric: of('metric'),
+        design: designs[of('design')] ?? ratio[0],
+        against: ratio[1] ?? null,
+        voltage: of('voltage'),
+        frequency: of('frequency'),
+        value,
+        change: of('change') !== null,
+        where: of('where'),
+        basis: of('basis'),
+      };
+    });
 }

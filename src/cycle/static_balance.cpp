@@ -273,12 +273,14 @@ JamAngles nearest_jams(const Vehicle<double>& v, double from, double margin) {
 
 namespace {
 
-/// Evenly spaced crank angles, the first of them zero; none without wings.
+/// Evenly spaced crank angles, the first of them zero; none without wings. Wings that pitch far have a drag that varies
+/// more over the cycle, and the balances of its mean are fewer on few places.
 std::vector<LoadPlace<double>> load_places(const Vehicle<double>& v) {
   std::vector<LoadPlace<double>> places;
   if (!(v.wing_inertia > 0.0)) return places;
   const UnitCircle& circle = unit_circle();
-  constexpr std::size_t stride = 4;
+  const double pitch = v.wings.pitch_coefficient * typical_stroke_slope(v.transmission) * no_load_speed(v);
+  const std::size_t stride = pitch > far_pitch ? 1 : 4;
   places.reserve(angle_count / stride);
   for (std::size_t n = 0; n < angle_count; n += stride) {
     const Configuration<double> configuration = configuration_at(v, circle.sine[n], circle.cosine[n]);

@@ -70,8 +70,8 @@ class BenchReader {
     if (!(fit.loss_scale >= min_loss_scale && fit.loss_scale <= max_loss_scale)) {
       options->refuse(
           options->at("loss_scale"), "loss_scale",
-          fmt::format("must lie between {:g} and {:g} standard deviations, got {:g}: elsewhere intervals do "
-                      "not hold what they say",
+          fmt::format("must lie between {:g} and {:g} standard deviations, got {:g}: elsewhere the coverage "
+                      "of intervals is not as stated",
                       min_loss_scale, max_loss_scale, fit.loss_scale));
     }
     fit.starts = options->count("starts", 1).value_or(1);
@@ -351,8 +351,7 @@ class BenchReader {
         if (fit.deviations[q].kind != Deviation::Kind::relative) continue;
         for (const BenchRow& row : log.rows) {
           if (row.values[c] == 0.0) {
-            throw InputError(log.file, row.line, 1, column.name,
-                             "is 0, of which no relative standard deviation can be taken; give an absolute one");
+            throw InputError(log.file, row.line, 1, column.name, "is 0: give an absolute standard deviation");
           }
         }
       }

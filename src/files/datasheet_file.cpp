@@ -56,7 +56,7 @@ MotorDatasheet parse_datasheet(std::string_view text, const std::string& file_na
   InputErrors errors;
   errors.attempt([&] { root.known_keys(sections); });
   const auto sheet = root.table("datasheet");
-  if (!sheet) root.refuse("datasheet", "missing section [datasheet] with what the maker publishes");
+  if (!sheet) root.refuse("datasheet", "missing section [datasheet] with the published values");
   std::vector<std::string_view> known = {"name", "source", "note", "shaft", "gear_ratio", "gear_efficiency", "point"};
   for (const Field& f : fields) known.push_back(f.key);
   for (const Field& f : thermal_fields) known.push_back(f.key);

@@ -92,7 +92,8 @@ class Reader {
     }
     attempt([&] {
       if (!document_.has_section("piezo") || !document_.has_section("motor")) return;
-      document_.locate("motor").refuse("motor", "has no place beside [piezo], which swings the wings without a motor");
+      document_.locate("motor").refuse("motor",
+                                       "cannot be combined with [piezo], which swings the wings without a motor");
     });
     read_numbers(d);
     attempt([&] {
@@ -250,7 +251,7 @@ class Reader {
         if (!belongs(key) || !key.set) return;
         if (const Value* value = document_.find(key.path)) {
           const double number = number_of(*value, *value, key.path, key.unit);
-          if (!key.set(d, number)) value->origin.refuse(std::string(key.path), "has no place in this vehicle");
+          if (!key.set(d, number)) value->origin.refuse(std::string(key.path), "does not apply to this vehicle");
           check_range(*value, key, number);
         } else if (is_required(key)) {
           missing(key.path, quantity_example(key.unit));

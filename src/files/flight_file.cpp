@@ -27,7 +27,7 @@ class FlightReader : public detail::StudySections {
     attempt([&] { file_.title = read_title(); });
     for (const char* key : {"metrics", "hold", "allow_extrapolation"}) {
       if (const TomlNode* node = study_->find(key)) {
-        attempt([&] { refuse(*node, fmt::format("study.{}", key), "has no place in a flight"); });
+        attempt([&] { refuse(*node, fmt::format("study.{}", key), "does not apply to a flight"); });
       }
     }
     if (!attempt([&] { file_.source = read_sides(folder_); })) finish();

@@ -10,6 +10,7 @@
 
 #include "files/free_parameter.hpp"
 #include "files/measured_flight.hpp"
+#include "files/measured_hover.hpp"
 #include "files/measured_maps.hpp"
 #include "files/measured_table.hpp"
 #include "files/toml_document.hpp"
@@ -70,6 +71,10 @@ class MeasuredReader {
         known({"wings", "air_density", "frequency", "stroke_mean", "stroke_harmonics", "pitch_mean", "pitch_harmonics",
                "speed", "stroke_plane_tilt", "load"});
         set_.problem = detail::read_flight(root_, plan_, table_, set_);
+        break;
+      case ValidationModel::flight:
+        known({"vehicle", "settings", "value", "map"});
+        set_.problem = detail::read_hover(plan_, table_, vehicle(), set_);
         break;
       case ValidationModel::none: break;
     }

@@ -36,7 +36,8 @@ class OptimiseReader : public detail::StudySections {
     attempt([&] { file.title = read_title(); });
     attempt([&] {
       if (const TomlNode* metrics = study_->find("metrics")) {
-        refuse(*metrics, "study.metrics", "has no place here: the objective and the constraints say which are wanted");
+        refuse(*metrics, "study.metrics",
+               "does not apply here: the objective and the constraints say which are wanted");
       }
     });
     attempt([&] { study.options.condition = read_condition(); });
@@ -77,7 +78,7 @@ class OptimiseReader : public detail::StudySections {
     attempt([&] {
       if (!after_hover || counts_flight_) return;
       refuse(*after_hover, "study.count_after_hover",
-             "has no place here: neither the objective nor a constraint is endurance_s");
+             "does not apply here: neither the objective nor a constraint is endurance_s");
     });
     finish();
     check_size(file);
@@ -195,7 +196,7 @@ class OptimiseReader : public detail::StudySections {
   std::vector<double> values_of(const TomlNode& node, const TomlNode& values, const DesignParameter& parameter) {
     for (const char* other : {"lower", "upper", "scale"}) {
       if (const TomlNode* given = node.find(other)) {
-        refuse(*given, fmt::format("parameter.{}", other), "has no place beside parameter.values");
+        refuse(*given, fmt::format("parameter.{}", other), "cannot be combined with parameter.values");
       }
     }
     if (values.kind != Kind::array || values.items.size() < 2) {
@@ -334,7 +335,7 @@ class OptimiseReader : public detail::StudySections {
     if (!is_there(path)) refuse(name, "motors.catalogue", fmt::format("there is no file {}", path.string()));
     const bool gearboxes = !file.drive_train.gearboxes.empty();
     if (const TomlNode* ratio = node.find("gear_ratio"); ratio && gearboxes) {
-      refuse(*ratio, "motors.gear_ratio", "has no place beside [gearboxes], which state theirs");
+      refuse(*ratio, "motors.gear_ratio", "cannot be combined with [gearboxes], which state theirs");
     }
     double gear = 1.0;
     if (!gearboxes) {
@@ -351,8 +352,7 @@ class OptimiseReader : public detail::StudySections {
       if (!(*rest > 0.0)) refuse(*mass, "motors.mass_without", "must be > 0 kg");
       if (file.study.design.masses.motor) {
         refuse(*mass, "motors.mass_without",
-               "has no place where the vehicle gives motor.mass: vehicle.mass is without "
-               "the motor already");
+               "does not apply where the vehicle gives motor.mass: vehicle.mass is without the motor already");
       }
     }
     if (const TomlNode* within = node.find("within_nominal_current")) {
@@ -367,7 +367,7 @@ class OptimiseReader : public detail::StudySections {
         detail::stated_table(TomlFields(this->file(), "motors", node), "torque_constant"));
     for (MotorCandidate& motor : file.motors) {
       if (gearboxes && motor.refused.empty() && !motor.design.motor.gear_ratio) {
-        motor.refused = "has a gearbox of its own";
+        motor.refused = "already has a gearbox";
       }
     }
     require_usable(name, "motors", "motor", file.motors);
@@ -412,8 +412,7 @@ class OptimiseReader : public detail::StudySections {
         }
         search.compatible = detail::parse_compatibility(text_beside(*compatible, "drive_train.compatible").second);
         if (search.compatible.empty()) {
-          refuse(*compatible, "drive_train.compatible",
-                 "states nothing; expected lines of a motor and the gearboxes that go with it");
+          refuse(*compatible, "drive_train.compatible", "is empty; expected lines with a motor and its gearboxes");
         }
       }
     }

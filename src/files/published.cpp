@@ -114,7 +114,7 @@ class Reader : TomlReader {
     std::tie(v.design, v.relative_to) = designs_at(t, file);
     v.change = has(t, "change");
     if (v.change && (!v.relative_to || has(t, "published"))) {
-      refuse(*t.find("change"), "change", "belongs to a ratio, in place of published");
+      refuse(*t.find("change"), "change", "applies only to a ratio, instead of published");
     }
     std::tie(v.published, v.published_text) =
         published_at(t, v.change ? "change" : "published", v.relative_to ? "1" : metric_info(v.metric).unit);

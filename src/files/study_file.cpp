@@ -286,7 +286,7 @@ class StudyReader : public detail::StudySections {
     const auto not_with = [&](std::initializer_list<const char*> keys) {
       for (const char* key : keys) {
         if (const TomlNode* given = node.find(key)) {
-          refuse(*given, fmt::format("samples.{}", key), fmt::format("has no place with method = \"{}\"", name));
+          refuse(*given, fmt::format("samples.{}", key), fmt::format("does not apply with method = \"{}\"", name));
         }
       }
     };

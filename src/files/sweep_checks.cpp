@@ -191,7 +191,7 @@ class SweepChecks {
         const std::string_view only_with = find_parameter<double>(quantity.key)->only_with;
         reader_.refuse(
             places_.keys.at(quantity.key), quantity.key,
-            only_with.empty() ? "has no place in this vehicle" : fmt::format("only with {}", with_or(only_with)));
+            only_with.empty() ? "does not apply to this vehicle" : fmt::format("only with {}", with_or(only_with)));
       });
       for_each_number([&](const SweepAxis& axis, std::size_t q) {
         const SweptQuantity& quantity = axis.quantities[q];

@@ -112,7 +112,7 @@ class ToleranceReader : public detail::ChoiceSections {
       for (const char* other : keys) {
         if (const TomlNode* given = node.find(other)) {
           refuse(*given, fmt::format("parameter.{}", other),
-                 fmt::format("has no place with distribution = \"{}\"", name));
+                 fmt::format("does not apply with distribution = \"{}\"", name));
         }
       }
     };

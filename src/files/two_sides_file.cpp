@@ -29,7 +29,7 @@ std::string complaint_about(const Design<double>& d) {
     return "both sides would draw on one battery, which ties them together; expected supply.type = \"sine\"";
   }
   if (d.supply_resonance_ratio) {
-    return "supply.resonance_ratio would give either side a frequency of its own; give supply.frequency";
+    return "supply.resonance_ratio would give the sides different frequencies; give supply.frequency";
   }
   return "";
 }

@@ -39,55 +39,44 @@ std::vector<TimeModel> models_of(const FlightVehicle& vehicle) {
   return models;
 }
 
-StrokeOnBody stroke_of(const FullState<double>& instant, const PitchMotion<double>& m) {
-  return {instant.configuration.stroke_angle, m.stroke_velocity, m.stroke_acceleration, 0.0};
-}
-
 }  // namespace
 
 FlightModel::FlightModel(const FlightVehicle& flies) : vehicle(flies), drives(models_of(flies)) {
-  std::size_t count = 0;
-  for (std::size_t n = 0; n < drives.size(); ++n) {
-    first_[n] = count;
-    count += drives[n].indices.count;
-  }
-  first_[drives.size()] = count;
-  coupled = padded(count + body_state_count);
+  coupled = padded(order_unknowns());
   own_flows();
   controls_[FlightControl::voltage] = vehicle.stated_voltage;
   set_controls(controls_);
 }
 
 FlightModel::FlightModel(const FlightModel& other)
-    : vehicle(other.vehicle),
+    : Base(other),
+      vehicle(other.vehicle),
       drives(other.drives),
-      coupled(other.coupled),
       frozen(other.frozen),
       gravity(other.gravity),
       wind(other.wind),
       now(other.now),
       totals(other.totals),
+      next_step(other.next_step),
       flows_(other.flows_),
-      first_(other.first_),
       controls_(other.controls_),
-      scaled_to_(other.scaled_to_),
-      speed_scale_(other.speed_scale_),
-      rate_scale_(other.rate_scale_) {
+      scaled_to_(other.scaled_to_) {
   own_flows();
 }
 
 FlightModel& FlightModel::operator=(const FlightModel& other) {
   if (this == &other) return *this;
-  vehicle = other.vehicle, drives = other.drives, coupled = other.coupled, frozen = other.frozen;
+  Base::operator=(other);
+  vehicle = other.vehicle, drives = other.drives, frozen = other.frozen;
   gravity = other.gravity, wind = other.wind, now = other.now, totals = other.totals;
-  flows_ = other.flows_, first_ = other.first_, controls_ = other.controls_;
-  scaled_to_ = other.scaled_to_, speed_scale_ = other.speed_scale_, rate_scale_ = other.rate_scale_;
+  flows_ = other.flows_, controls_ = other.controls_, scaled_to_ = other.scaled_to_;
+  next_step = other.next_step;
   own_flows();
   return *this;
 }
 
 void FlightModel::own_flows() {
-  std::vector<std::shared_ptr<OnsetFlow>> flows;
+  DriveFlows flows;
   for (std::size_t n = 0; n < drives.size(); ++n) {
     flows.push_back(std::make_shared<OnsetFlow>(flows_.empty() ? vehicle.drives[n].flow : *flows_[n]));
     drives[n].vehicle.wings.flow = flows.back();
@@ -99,16 +88,13 @@ void FlightModel::start(const BodyState& body, const std::vector<Coordinates<dou
   now = {};
   now.body = body;
   totals = {};
+  next_step = 0.0;
   set_flows(0.0, body);
   for (std::size_t n = 0; n < drives.size(); ++n) {
     drives[n].start(n < from.size() ? from[n] : Coordinates<double>{});
     scaled_to_[n] = 0.0;
-    const double fastest =
-        drives[n].speed_scale * (vehicle.direct ? 1.0 : typical_stroke_slope(drives[n].vehicle.transmission));
-    const double R = drives[n].vehicle.wings.wake.strips.at.back().radius;
-    speed_scale_ = n == 0 ? fastest * R : std::max(speed_scale_, fastest * R);
   }
-  rate_scale_ = speed_scale_ / std::max(1e-6, drives[0].vehicle.wings.wake.strips.at.back().radius);
+  scale_body();
   set_controls(controls_);
 }
 
@@ -142,84 +128,17 @@ void FlightModel::set_controls(const FlightControls& controls) {
 }
 
 void FlightModel::set_flows(double t, const BodyState& body) const {
-  Triple air = body.velocity;
-  if (wind) {
-    const Triple blows = to_body(body.attitude, wind(t, body.position));
-    for (std::size_t k = 0; k < 3; ++k) air[k] -= blows[k];
-  }
-  for (const auto& flow : flows_) {
-    flow->velocity = air;
-    flow->rates = body.rates;
-    flow->reaction_moment = 0.0;
-  }
+  detail::set_flows(flows_, body, wind ? wind(t, body.position) : Triple{});
 }
 
-FlightModel::Instant FlightModel::instant_of(std::size_t n, double t, const double* y) const {
-  const TimeModel& drive = drives[n];
-  Instant instant;
-  instant.place = drive.indices.coordinates(y + first_[n]);
-  instant.at = drive.instant(t, instant.place);
-  instant.mode = on_force_branch(drive.vehicle, instant.at, drive.mode(), &instant.motion);
-  return instant;
-}
-
-BodyLoads FlightModel::loads(double t, const double* y, const BodyState& body, std::vector<Instant>& instants,
-                             std::optional<BodyState>& accelerations) const {
+AirOnBody FlightModel::air_at(double t, const double* y, const BodyState& body) const {
   set_flows(t, body);
-  BodyLoads sum = plate_loads(vehicle.body, flows_[0]->velocity, body.rates);
-  instants.resize(drives.size());
-  const auto evaluate_all = [&] {
-    for (std::size_t n = 0; n < drives.size(); ++n) instants[n] = instant_of(n, t, y);
-  };
-  const auto add_wings = [&](BodyLoads& to) {
-    for (std::size_t n = 0; n < drives.size(); ++n) {
-      const BodyLoads wings =
-          wing_loads_on_body(drives[n].vehicle, instants[n].at, instants[n].motion, instants[n].mode);
-      for (std::size_t k = 0; k < 3; ++k) to.force[k] += wings.force[k], to.moment[k] += wings.moment[k];
-    }
-  };
-  evaluate_all();
-  if (!(vehicle.wing_mass > 0.0) || frozen) {
-    add_wings(sum);
-    return sum;
-  }
-  // How each drive answers to a moment, on its branch.
-  std::vector<StrokeOnBody> strokes;
-  std::vector<const OnsetFlow*> flows;
-  for (std::size_t n = 0; n < drives.size(); ++n) {
-    strokes.push_back(stroke_of(instants[n].at, instants[n].motion));
-    flows.push_back(flows_[n].get());
-    const double probe = 1e-3 * vehicle.body.mass * standard_gravity * vehicle.wing_centre;
-    flows_[n]->reaction_moment = probe;
-    const PitchMotion<double> probed = evaluate(drives[n].vehicle, instants[n].at, instants[n].mode);
-    strokes[n].compliance = (strokes[n].acceleration - probed.stroke_acceleration) / probe;
-  }
-  const BodyLoads plates = sum;
-  BodyWithWings found;
-  // The air's inertia on hinges follows the accelerations, a little.
-  for (int pass = 0; pass < (drives[0].wings_pitch ? 2 : 1); ++pass) {
-    sum = plates;
-    add_wings(sum);
-    found = body_with_wings(vehicle, flows, strokes, body, sum, gravity);
-    for (std::size_t n = 0; n < drives.size(); ++n) flows_[n]->reaction_moment = found.moments[n];
-    evaluate_all();
-  }
-  accelerations = BodyState{};
-  accelerations->velocity = found.acceleration;
-  accelerations->rates = found.angular_acceleration;
-  return sum;
-}
-
-bool FlightModel::ended() const {
-  return std::any_of(drives.begin(), drives.end(), [](const TimeModel& d) { return d.ended(); });
+  return air_on_body(vehicle, vehicles(), flows_, body, gravity, !frozen,
+                     [&](std::size_t n) { return instant_of(n, t, y); });
 }
 
 void FlightModel::begin_piece() {
-  set_flows(now.t, now.body);
-  for (TimeModel& drive : drives) {
-    drive.now.t = now.t;
-    drive.begin_piece();
-  }
+  Base::begin_piece();
   sum_impacts();
 }
 
@@ -234,41 +153,29 @@ void FlightModel::sum_impacts() {
 }
 
 void FlightModel::unknowns(double* y) const {
-  std::fill(y, y + coupled, 0.0);
-  for (std::size_t n = 0; n < drives.size(); ++n) drives[n].unknowns(y + first_[n]);
-  double* next = y + first_[drives.size()];
-  BodyState::each(now.body, [&](const double& x) { *next++ = x; });
-  next = y + coupled;
+  write_unknowns(now.body, y);
+  double* next = y + coupled;
   FlightTotals::each(totals, [&](const double& x) { *next++ = x; });
-}
-
-BodyState FlightModel::body_of(const double* y) const {
-  BodyState body;
-  const double* next = body_unknowns(y);
-  BodyState::each(body, [&](double& x) { x = *next++; });
-  return body;
 }
 
 void FlightModel::set(double t, const double* y) {
   now.t = t;
   now.body = body_of(y);
-  for (std::size_t n = 0; n < drives.size(); ++n) drives[n].set(t, y + first_[n]);
+  for (std::size_t n = 0; n < drives.size(); ++n) drives[n].set(t, of_drive(n, y));
   const double* next = y + coupled;
   FlightTotals::each(totals, [&](double& x) { x = *next++; });
 }
 
 bool FlightModel::rates(double t, const double* y, double* dy) const {
   const BodyState body = body_of(y);
-  std::vector<Instant> instants;
-  std::optional<BodyState> accelerations;
-  const BodyLoads air = loads(t, y, body, instants, accelerations);
+  const AirOnBody air = air_at(t, y, body);
   std::fill(dy, dy + coupled, 0.0);
   FlightTotals flow;
   for (std::size_t n = 0; n < drives.size(); ++n) {
     const TimeModel& drive = drives[n];
-    const Instant& instant = instants[n];
+    const DriveInstant& instant = air.drives[n];
     const PitchMotion<double>& m = instant.motion;
-    drive.indices.unknowns(rates_of(drive.vehicle, instant.place, instant.at, m), dy + first_[n]);
+    drive.indices.unknowns(rates_of(drive.vehicle, instant.place, instant.at, m), of_drive(n, dy));
     const double omega = instant.at.omega;
     const CycleIntegrals<double> powers = integrands<double>(m, omega, instant.mode);
     const auto power = [&](Integral which) { return powers[std::size_t(which)]; };
@@ -281,90 +188,48 @@ bool FlightModel::rates(double t, const double* y, double* dy) const {
     flow.wing_air += power(Integral::aero_work) - flows_[n]->reaction_moment * m.stroke_velocity;
     flow.residual += power(Integral::residual_work);
   }
-  flow.force = air.force, flow.moment = air.moment;
+  flow.force = air.loads.force, flow.moment = air.loads.moment;
   for (std::size_t k = 0; k < 3; ++k) {
-    flow.body_air += air.force[k] * body.velocity[k] + air.moment[k] * body.rates[k];
+    flow.body_air += air.loads.force[k] * body.velocity[k] + air.loads.moment[k] * body.rates[k];
   }
   BodyState moves;
   moves.attitude = {0.0, 0.0, 0.0, 0.0};
-  if (!frozen) {
-    moves = body_rates(vehicle.body, body, air, gravity);
-    if (accelerations) moves.velocity = accelerations->velocity, moves.rates = accelerations->rates;
-  }
-  double* next = dy + first_[drives.size()];
-  BodyState::each(moves, [&](const double& x) { *next++ = x; });
-  next = dy + coupled;
+  if (!frozen) moves = body_rates_in(vehicle, body, air, gravity);
+  write_body(moves, dy);
+  double* next = dy + coupled;
   FlightTotals::each(flow, [&](const double& x) { *next++ = x; });
   return std::all_of(dy, dy + coupled + flight_total_count, [](double x) { return std::isfinite(x); });
 }
 
 std::array<double, FlightModel::indicator_count> FlightModel::indicators(double t, const double* y) const {
-  std::array<double, indicator_count> values;
-  values.fill(1.0);
   const BodyState body = body_of(y);
   if (vehicle.wing_mass > 0.0 && !frozen) {
-    std::vector<Instant> instants;
-    std::optional<BodyState> accelerations;
-    loads(t, y, body, instants, accelerations);
+    air_at(t, y, body);
   } else {
     set_flows(t, body);
   }
-  for (std::size_t n = 0; n < drives.size(); ++n) {
-    const auto own = drives[n].indicators(t, y + first_[n]);
-    std::copy(own.begin(), own.end(), values.begin() + std::ptrdiff_t(n * per_drive));
-  }
-  return values;
-}
-
-std::array<int, FlightModel::indicator_count> FlightModel::directions() const {
-  std::array<int, indicator_count> directions{};
-  for (std::size_t n = 0; n < drives.size(); ++n) {
-    const auto own = drives[n].directions();
-    std::copy(own.begin(), own.end(), directions.begin() + std::ptrdiff_t(n * per_drive));
-  }
-  return directions;
+  return drive_indicators(t, y);
 }
 
 void FlightModel::handle(std::size_t indicator) {
-  set_flows(now.t, now.body);
-  drives[indicator / per_drive].handle(indicator % per_drive);
+  Base::handle(indicator);
   sum_impacts();
 }
 
-std::optional<TransientEvent::Kind> FlightModel::event_at(std::size_t indicator) const {
-  return drives[indicator / per_drive].event_at(indicator % per_drive);
-}
-
 bool FlightModel::branch_lost() {
-  set_flows(now.t, now.body);
-  bool lost = false;
-  for (TimeModel& drive : drives) lost = drive.branch_lost() || lost;
+  const bool lost = Base::branch_lost();
   sum_impacts();
   return lost;
 }
 
 void FlightModel::tolerated(double relative, const double* y, double* errors) const {
-  std::fill(errors, errors + coupled + flight_total_count, relative);
-  for (std::size_t n = 0; n < drives.size(); ++n) drives[n].tolerated(relative, y + first_[n], errors + first_[n]);
-  // Of the speed of the wing tips: by it the loads go.
-  double* next = errors + first_[drives.size()];
-  for (int k = 0; k < 3; ++k) *next++ = relative * speed_scale_;
-  for (int k = 0; k < 3; ++k) *next++ = relative * rate_scale_;
-  for (int k = 0; k < 4; ++k) *next++ = relative;
-  for (int k = 0; k < 3; ++k) *next++ = relative * speed_scale_ * cycle_time();
+  tolerate_unknowns(relative, y, errors);
   const double weight = vehicle.body.mass * standard_gravity, T = cycle_time();
-  const double arm = speed_scale_ / rate_scale_;
-  next = errors + coupled;
+  double* next = errors + coupled;
   for (int k = 0; k < 3; ++k) *next++ = relative * weight * T;
-  for (int k = 0; k < 3; ++k) *next++ = relative * weight * arm * T;
-  const double energy = relative * weight * speed_scale_ * T;
+  for (int k = 0; k < 3; ++k) *next++ = relative * weight * reach() * T;
+  const double energy = relative * weight * tip_speed() * T;
   while (next < errors + coupled + flight_total_count) *next++ = energy;
-}
-
-double FlightModel::longest_step() const {
-  double longest = std::numeric_limits<double>::infinity();
-  for (const TimeModel& drive : drives) longest = std::min(longest, drive.longest_step());
-  return longest;
 }
 
 double FlightModel::stored_energy() const {
@@ -385,35 +250,17 @@ double FlightModel::stored_energy() const {
 BodyLoads FlightModel::loads_now() const {
   std::vector<double> y(std::size_t(coupled) + flight_total_count);
   unknowns(y.data());
-  std::vector<Instant> instants;
-  std::optional<BodyState> accelerations;
-  return loads(now.t, y.data(), now.body, instants, accelerations);
+  return air_at(now.t, y.data(), now.body).loads;
 }
-
-std::vector<double> FlightModel::typical() const {
-  std::vector<double> sizes(std::size_t(coupled), 1.0);
-  for (std::size_t n = 0; n < drives.size(); ++n) {
-    const auto own = drives[n].typical();
-    std::copy_n(own.begin(), drives[n].indices.count, sizes.begin() + std::ptrdiff_t(first_[n]));
-  }
-  return sizes;
-}
-
-double FlightModel::cycle_time() const { return drives[0].time_scale; }
 
 std::unique_ptr<Integrator> integrator_for(TimeIntegrator, const FlightModel& model, const double& relative) {
-  IntegratorProblem p;
-  p.coupled = model.coupled;
-  p.size = model.coupled + int(flight_total_count);
-  p.roots = int(FlightModel::indicator_count);
-  p.rates = [&](double t, const double* y, double* dy) { return model.rates(t, y, dy); };
-  p.root_functions = [&](double t, const double* y, double* values) {
-    const auto indicators = model.indicators(t, y);
-    std::copy(indicators.begin(), indicators.end(), values);
-  };
-  p.tolerated = [&](const double* y, double* errors) { model.tolerated(relative, y, errors); };
-  p.longest_step = model.longest_step();
-  p.typical = model.typical();
+  IntegratorProblem p = FlightModel::problem_of(model, relative, int(flight_total_count));
+  // For learning: roots to a small part of what a step may be off by, and steps as long as before an event.
+  constexpr double coarse = 1e-5;
+  if (relative >= coarse) {
+    p.root_resolution = 0.1 * relative;
+    p.next_step = &model.next_step;
+  }
   constexpr int Q = int(flight_total_count);
   switch (model.coupled) {
     case 16: return std::make_unique<OwnIntegrator<16, Q, false>>(std::move(p));

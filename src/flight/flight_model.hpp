@@ -9,6 +9,7 @@
 #include <optional>
 #include <vector>
 
+#include "flight/drives_on_body.hpp"
 #include "time/integrator.hpp"
 #include "time/time_model.hpp"
 #include "wingbeat/flight/flight_vehicle.hpp"
@@ -17,13 +18,10 @@
 
 namespace wingbeat::detail {
 
-/// The unknowns are those of the drives, one after the other, and the body's, then the integrals of FlightTotals.
-class FlightModel {
+/// Beside its unknowns it integrates FlightTotals.
+class FlightModel : public DrivesOnBody<FlightModel, TimeModel> {
  public:
-  static constexpr std::size_t max_drives = 2;
-  static constexpr std::size_t per_drive = TimeModel::indicator_count;
-  static constexpr std::size_t indicator_count = max_drives * per_drive;
-  static constexpr std::size_t max_unknowns = max_drives * wingbeat::max_unknowns + body_state_count;
+  using Base = DrivesOnBody<FlightModel, TimeModel>;
 
   struct Now {
     double t = 0.0;
@@ -44,62 +42,47 @@ class FlightModel {
   void set_controls(const FlightControls& controls);
   const FlightControls& controls() const { return controls_; }
 
-  // What the loop through the events asks (time/event_loop.hpp).
-  bool ended() const;
+  // What the loop through the events asks beside what the base answers.
   void begin_piece();
   void unknowns(double* y) const;
   void set(double t, const double* y);
   bool rates(double t, const double* y, double* dy) const;
   std::array<double, indicator_count> indicators(double t, const double* y) const;
-  std::array<int, indicator_count> directions() const;
   void handle(std::size_t indicator);
-  static constexpr bool ends_piece(std::size_t) { return true; }
-  std::optional<TransientEvent::Kind> event_at(std::size_t indicator) const;
   bool branch_lost();
   void tolerated(double relative, const double* y, double* errors) const;
-  double longest_step() const;
   static constexpr double next_switch() { return std::numeric_limits<double>::infinity(); }
   void switch_supply() {}
+
+  TimeModel& drive(std::size_t n) { return drives[n]; }
+  const TimeModel& drive(std::size_t n) const { return drives[n]; }
+  std::size_t drive_count() const { return drives.size(); }
+  void set_flows_now() const { set_flows(now.t, now.body); }
 
   /// Energy of drives and body, over the height of the origin [J].
   double stored_energy() const;
   /// What acts on the body now, wings and plates.
   BodyLoads loads_now() const;
-  /// Typical size of each unknown.
-  std::vector<double> typical() const;
-  double cycle_time() const;  ///< of the first drive, about [s]
 
   FlightVehicle vehicle;
   std::vector<TimeModel> drives;
-  int coupled = 0;      ///< number of unknowns without integrals
   bool frozen = false;  ///< the body does not move from where it is, though it has a velocity
   double gravity = standard_gravity;
   Wind wind;
   Now now;
   FlightTotals totals;
+  mutable double next_step = 0.0;  ///< with which the next piece begins [s]; 0: not known
 
  private:
-  struct Instant {
-    FullState<double> at;
-    PitchMotion<double> motion;
-    Mode<double> mode;
-    Coordinates<double> place;
-  };
   void own_flows();
   void set_flows(double t, const BodyState& body) const;
-  Instant instant_of(std::size_t n, double t, const double* y) const;
-  /// Loads of wings and plates; with wings that have mass also the accelerations of the body, set in `accelerations`.
-  BodyLoads loads(double t, const double* y, const BodyState& body, std::vector<Instant>& instants,
-                  std::optional<BodyState>& accelerations) const;
-  const double* body_unknowns(const double* y) const { return y + first_[drives.size()]; }
-  BodyState body_of(const double* y) const;
+  /// Loads of wings and plates; with wings that have mass also the accelerations of the body.
+  AirOnBody air_at(double t, const double* y, const BodyState& body) const;
   void sum_impacts();
 
-  std::vector<std::shared_ptr<OnsetFlow>> flows_;
-  std::array<std::size_t, max_drives + 1> first_{};  ///< where the unknowns of each drive begin, then the body's
+  DriveFlows flows_;
   FlightControls controls_;
   std::array<double, max_drives> scaled_to_{};  ///< voltage that the sizes of a drive are for [V]
-  double speed_scale_ = 1.0, rate_scale_ = 1.0;
 };
 
 /// That of explicit steps.

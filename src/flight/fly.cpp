@@ -4,307 +4,54 @@
 #include <cmath>
 #include <utility>
 
-#include "flight/flight_loop.hpp"
+#include "flight/flight_run.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/text.hpp"
 
 namespace wingbeat {
 namespace {
 
-using detail::ActuatorSet, detail::BatteryInFlight, detail::SensorSet, detail::tilt_of;
-
-/// Instants that follow each other at a rate; those within rounding of each other count as one.
-struct Clock {
-  double period;
-  long count = 0;
-  double next() const { return double(count) * period; }
-  bool due(double time) const { return next() <= time + 1e-9; }
-};
-
-class FlightRun {
- public:
-  FlightRun(const FlightVehicle& vehicle, const FlightPlan& plan, FlightRecord& flight, FlightController controller,
-            double average)
-      : vehicle_(vehicle),
-        plan_(plan),
-        flight_(flight),
-        controller_(std::move(controller)),
-        simulation_(vehicle, {.tolerance = plan.tolerance}),
-        sensors_(plan.sensors, average),
-        actuators_(plan.actuators, first_controls(), 1.0 / plan.controller.rate),
-        battery_(vehicle),
-        wind_(wind_of(plan.wind, plan.duration)),
-        control_clock_{1.0 / plan.controller.rate},
-        sensor_clock_{1.0 / (plan.sensors.rate > 0.0 ? plan.sensors.rate : plan.controller.rate)},
-        row_clock_{plan.sample > 0.0             ? plan.sample
-                   : flight.trim.frequency > 0.0 ? 1.0 / flight.trim.frequency
-                                                 : 0.01} {}
-
-  void run() {
-    start();
-    const double first_stored = simulation_.stored_energy();
-    const double first_body = body_energy(vehicle_.body, simulation_.state().body, standard_gravity);
-    bool flying = true;
-    while (flying) {
-      act();
-      if (simulation_.time() >= plan_.duration - 1e-9) break;
-      const double next = std::min({sensor_clock_.next(), control_clock_.next(), row_clock_.next(), plan_.duration});
-      flying = advance(next);
-    }
-    if (flight_.rows.back().time < simulation_.time()) add_row();
-    finish(first_stored, first_body);
+TrackingError error_of(const std::vector<FlightRow>& rows) {
+  TrackingError error;
+  for (const FlightRow& row : rows) {
+    const Triple &p = row.position, &r = row.reference.position;
+    const double across = std::hypot(p[0] - r[0], p[1] - r[1]), up = std::abs(p[2] - r[2]);
+    error.horizontal_rms += square(across), error.vertical_rms += square(up);
+    error.heading_rms += square(std::remainder(row.angles[2] - row.reference.yaw, two_pi));
+    error.horizontal_max = std::max(error.horizontal_max, across);
+    error.vertical_max = std::max(error.vertical_max, up);
+    error.tilt_max = std::max(error.tilt_max, std::acos(std::cos(row.angles[0]) * std::cos(row.angles[1])));
   }
-
- private:
-  FlightControls first_controls() const {
-    return plan_.held && plan_.controller.type == ControllerType::none ? *plan_.held : flight_.trim.controls;
+  for (double* sum : {&error.horizontal_rms, &error.vertical_rms, &error.heading_rms}) {
+    *sum = std::sqrt(*sum / double(rows.size()));
   }
-
-  void start() {
-    const TrimResult& trim = flight_.trim;
-    const bool cruises = plan_.start == FlightStart::trim;
-    BodyState body;
-    if (cruises) body = steady_body(trim.condition, trim.roll, trim.pitch);
-    const StartDisturbance& by = plan_.disturbance;
-    body.attitude = attitude_of(
-        {(cruises ? trim.roll : 0.0) + by.angles[0], (cruises ? trim.pitch : 0.0) + by.angles[1], by.angles[2]});
-    for (std::size_t k = 0; k < 3; ++k) body.velocity[k] += by.velocity[k], body.rates[k] += by.rates[k];
-    body.position = {0.0, 0.0, -plan_.height};
-    if (!plan_.path.empty()) {
-      const FlightReference from = reference(0.0);
-      body.position = {from.position[0], from.position[1], -plan_.height};
-    }
-    first_position_ = body.position;
-    std::vector<Coordinates<double>> drives;
-    if (cruises && trim.flight) {
-      for (const DriveCycle& cycle : trim.flight->cycles) drives.push_back(cycle.start);
-    }
-    simulation_.command(first_controls());
-    simulation_.start(body, drives);
-    if (wind_) simulation_.blow(wind_);
-  }
-
-  FlightReference reference(double t) const {
-    if (!plan_.path.empty()) return reference_at(plan_.path, plan_.interpolation, t);
-    FlightReference at;
-    const FlightCondition& c = plan_.condition;
-    at.velocity = {c.speed, 0.0, -c.climb};
-    at.position = {c.speed * t, 0.0, -plan_.height - c.climb * t};
-    return at;
-  }
-
-  /// What is due now: sensors, then the controller, then a row.
-  void act() {
-    const double t = simulation_.time();
-    if (sensor_clock_.due(t)) {
-      sensors_.sample(t, simulation_.state().body);
-      ++sensor_clock_.count;
-    }
-    if (control_clock_.due(t)) {
-      ++control_clock_.count;
-      FlightControls command = first_controls();
-      if (controller_.design().type != ControllerType::none) {
-        command = controller_.step(sensors_.measured(t), reference(t));
-      }
-      const double before = simulation_.stored_energy();
-      simulation_.command(battery_.within(actuators_.follow(command)));
-      flight_.energy.controls += simulation_.stored_energy() - before;
-    }
-    if (row_clock_.due(t)) {
-      ++row_clock_.count;
-      add_row();
-    }
-  }
-
-  /// On to that time; false where the flight ends on the way.
-  bool advance(double until) {
-    const double from = simulation_.time();
-    const FlightState before = simulation_.state();
-    const bool near_ground = plan_.ground && may_reach_ground(before.body, until - from);
-    std::optional<FlightSimulation> kept;
-    if (near_ground) kept = simulation_;
-    const double used = simulation_.totals().electrical;
-    if (!simulation_.step_to(until)) {
-      return ends(FlightOutcome::jammed,
-                  detail::format("A drive jams after %.4g s: its equations have no solution.", simulation_.time()));
-    }
-    const BodyState& body = simulation_.state().body;
-    if (plan_.ground && -body.position[2] <= *plan_.ground) {
-      if (kept) land(*kept, before, until);
-      return ends(FlightOutcome::crashed, detail::format("It hits the ground after %.4g s.", simulation_.time()));
-    }
-    battery_.use(until - from, simulation_.totals().electrical - used);
-    if (plan_.progress) plan_.progress(until);
-    if (battery_.ended()) {
-      return ends(FlightOutcome::battery_empty,
-                  detail::format("The battery is empty, or at its cut-off voltage, after %.4g s.", until));
-    }
-    if (tilt_of(body) > plan_.max_tilt) {
-      return ends(FlightOutcome::crashed, detail::format("It tips over: the tilt exceeds %.4g deg after %.4g s.",
-                                                         degrees_per_radian * plan_.max_tilt, until));
-    }
-    double far = 0.0;
-    for (std::size_t k = 0; k < 3; ++k) far += square(body.position[k] - first_position_[k]);
-    if (std::sqrt(far) > plan_.max_distance) {
-      return ends(
-          FlightOutcome::crashed,
-          detail::format("It leaves the distance of %.4g m from the start after %.4g s.", plan_.max_distance, until));
-    }
-    return true;
-  }
-
-  bool may_reach_ground(const BodyState& body, double step) const {
-    const double down = to_earth(body.attitude, body.velocity)[2];
-    const double room = -body.position[2] - *plan_.ground;
-    return room <= 4.0 * (std::abs(down) + standard_gravity * step) * step;
-  }
-
-  /// Goes from before the ground to the moment of contact, by a cubic through heights and speeds at both ends.
-  void land(FlightSimulation kept, const FlightState& before, double until) {
-    const BodyState &a = before.body, b = simulation_.state().body;
-    const double T = until - before.time;
-    const double h0 = -a.position[2] - *plan_.ground, h1 = -b.position[2] - *plan_.ground;
-    const double v0 = -T * to_earth(a.attitude, a.velocity)[2], v1 = -T * to_earth(b.attitude, b.velocity)[2];
-    double low = 0.0, high = 1.0;
-    for (int n = 0; n < 60; ++n) {
-      const double x = 0.5 * (low + high);
-      const double h = h0 + x * (v0 + x * (3.0 * (h1 - h0) - 2.0 * v0 - v1 + x * (2.0 * (h0 - h1) + v0 + v1)));
-      (h > 0.0 ? low : high) = x;
-    }
-    simulation_ = std::move(kept);
-    simulation_.step_to(before.time + high * T);
-  }
-
-  bool ends(FlightOutcome outcome, std::string detail) {
-    flight_.outcome = outcome;
-    flight_.detail = std::move(detail);
-    return false;
-  }
-
-  void add_row() {
-    const double t = simulation_.time();
-    const BodyState body = simulation_.state().body;
-    FlightRow row;
-    row.time = t;
-    row.position = body.position;
-    row.angles = euler_angles(body.attitude);
-    row.velocity = body.velocity;
-    row.rates = body.rates;
-    if (wind_) row.wind = wind_(t, body.position);
-    row.controls = simulation_.controls();
-    row.reference = reference(t);
-    const FlightTotals& now = simulation_.totals();
-    if (!flight_.rows.empty() && t > flight_.rows.back().time) {
-      const double per = 1.0 / (t - flight_.rows.back().time);
-      row.electrical = per * (now.electrical - last_.electrical);
-      row.motor = per * (now.motor - last_.motor);
-      row.friction = per * (now.friction - last_.friction);
-      row.wing_air = per * (now.wing_air - last_.wing_air);
-    }
-    last_ = now;
-    row.body_energy = body_energy(vehicle_.body, body, standard_gravity);
-    row.stored_energy = simulation_.stored_energy();
-    if (battery_.there()) row.charge = battery_.charge(), row.available = battery_.available();
-    flight_.rows.push_back(row);
-  }
-
-  void finish(double first_stored, double first_body) {
-    const FlightTotals& total = simulation_.totals();
-    FlightEnergy& e = flight_.energy;
-    flight_.end = simulation_.time();
-    e.electrical = total.electrical, e.motor = total.motor, e.friction = total.friction;
-    e.stops = total.stops, e.wing_air = total.wing_air, e.formulation = total.residual, e.body_air = total.body_air;
-    e.stored = simulation_.stored_energy() - first_stored;
-    e.residual = e.electrical + e.body_air - e.motor - e.friction - e.stops - e.wing_air - e.formulation -
-                 (e.stored - e.controls);
-    e.body_stored = body_energy(vehicle_.body, simulation_.state().body, standard_gravity) - first_body;
-    if (!(vehicle_.wing_mass > 0.0)) e.body_residual = e.body_air - e.body_stored;
-    if (battery_.there()) e.battery = battery_.given();
-    if (flight_.end > 0.0) flight_.mean_power = e.electrical / flight_.end;
-    if (flight_.outcome == FlightOutcome::completed) {
-      flight_.detail = detail::format("It flies for the %.4g s of the plan.", flight_.end);
-    }
-    TrackingError& error = flight_.error;
-    for (const FlightRow& row : flight_.rows) {
-      const Triple &p = row.position, &r = row.reference.position;
-      const double across = std::hypot(p[0] - r[0], p[1] - r[1]), up = std::abs(p[2] - r[2]);
-      error.horizontal_rms += square(across), error.vertical_rms += square(up);
-      error.heading_rms += square(std::remainder(row.angles[2] - row.reference.yaw, two_pi));
-      error.horizontal_max = std::max(error.horizontal_max, across);
-      error.vertical_max = std::max(error.vertical_max, up);
-      error.tilt_max = std::max(error.tilt_max, std::acos(std::cos(row.angles[0]) * std::cos(row.angles[1])));
-    }
-    for (double* sum : {&error.horizontal_rms, &error.vertical_rms, &error.heading_rms}) {
-      *sum = std::sqrt(*sum / double(flight_.rows.size()));
-    }
-  }
-
-  const FlightVehicle& vehicle_;
-  const FlightPlan& plan_;
-  FlightRecord& flight_;
-  FlightController controller_;
-  FlightSimulation simulation_;
-  SensorSet sensors_;
-  ActuatorSet actuators_;
-  BatteryInFlight battery_;
-  std::function<Triple(double, const Triple&)> wind_;
-  Clock control_clock_, sensor_clock_, row_clock_;
-  Triple first_position_{};
-  FlightTotals last_;
-};
-
-/// Electrical controls act through the drive, whose motion follows within about a wingbeat.
-double lag_of(FlightControl which, const FlightActuators& actuators, double wingbeat) {
-  switch (which) {
-    case FlightControl::voltage:
-    case FlightControl::voltage_difference:
-    case FlightControl::bias:
-    case FlightControl::split_difference: return actuators.time_constant[std::size_t(which)] + wingbeat;
-    default: return actuators.time_constant[std::size_t(which)];
-  }
+  return error;
 }
 
 }  // namespace
 
-FlightRecord fly(const FlightVehicle& vehicle, const FlightPlan& asked) {
-  validate(asked);
-  FlightPlan plan = asked;
+FlightRecord fly(const FlightVehicle& vehicle, const FlightPlan& plan) {
+  detail::ReadyFlight ready = detail::ready_flight(vehicle, plan);
   FlightRecord flight;
-  flight.trim.condition = plan.condition;
-  ControlTask task;
-  task.vehicle = &vehicle;
-  const bool by_hand = plan.controller.type == ControllerType::none && plan.held && plan.start == FlightStart::rest;
-  if (!by_hand) {
-    AveragedFlight averaged(vehicle, {.tolerance = 1e-8});
-    flight.trim = trim(averaged, plan.condition);
-    if (!flight.trim.flies()) {
-      flight.outcome = FlightOutcome::no_trim;
-      flight.detail = "There is no trim to start from: " + flight.trim.detail + ".";
-      return flight;
-    }
-    if (plan.controller.type != ControllerType::none) {
-      const std::optional<FlightLinearModel> linear = linear_flight(averaged, flight.trim);
-      if (!linear) throw ParameterError("controller.type", "the vehicle does not flap beside its trim");
-      task.linear = *linear;
-    }
+  flight.trim = ready.trim;
+  if (!ready.controller) {
+    flight.outcome = FlightOutcome::no_trim;
+    flight.detail = "There is no trim to start from: " + flight.trim.detail + ".";
+    return flight;
   }
-  task.trim = flight.trim;
-  const double wingbeat = flight.trim.frequency > 0.0 ? 1.0 / flight.trim.frequency : 0.0;
-  constexpr double steps_of_wingbeat = 8.0, rate_without_trim = 250.0;
-  if (!(plan.controller.rate > 0.0)) {
-    plan.controller.rate = wingbeat > 0.0 ? std::clamp(steps_of_wingbeat / wingbeat, 10.0, 1e4) : rate_without_trim;
-  }
-  flight.control_rate = plan.controller.rate;
-  const double average = plan.sensors.average.value_or(wingbeat);
-  task.delay = plan.sensors.delay + 0.5 * average;
-  for (std::size_t k = 0; k < flight_control_count; ++k) {
-    task.lag[k] = lag_of(FlightControl(k), plan.actuators, wingbeat);
-    task.actuator_lag[k] = plan.actuators.time_constant[k];
-    task.speed[k] = plan.actuators.rate_limit[k];
-  }
-  FlightController controller(plan.controller, task);
-  flight.design = controller.design();
-  FlightRun(vehicle, plan, flight, std::move(controller), average).run();
+  flight.control_rate = ready.plan.controller.rate;
+  flight.design = ready.controller->design();
+  detail::FlightRun run(vehicle, std::move(ready),
+                        [&](const FlightRow& row, const FlightSimulation&) { flight.rows.push_back(row); });
+  run.fly_to(plan.duration);
+  run.record_end();
+  flight.end = run.simulation().time();
+  flight.outcome = run.outcome();
+  flight.detail = run.outcome() == FlightOutcome::completed ? detail::format("It flies the planned %.4g s.", flight.end)
+                                                            : run.detail();
+  flight.energy = run.energy();
+  flight.error = error_of(flight.rows);
+  if (flight.end > 0.0) flight.mean_power = flight.energy.electrical / flight.end;
   return flight;
 }
 

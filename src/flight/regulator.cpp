@@ -146,18 +146,20 @@ FlightControls FlightController::regulate(const FlightMeasurement& m, const Flig
   for (std::size_t k = 0; k < sent_.size(); ++k) z.segment(nx + ni + nu + Index(k) * nu, nu) = sent_[k];
   const VectorXd asked = -K_ * z;
   FlightControls controls = task_.trim.controls;
-  VectorXd given(nu);
+  VectorXd given(nu), beyond(nu);
   for (Index c = 0; c < nu; ++c) {
     const FlightControl which = design_.controls[std::size_t(c)];
-    controls[which] = limited(which, task_.trim.controls[which] + asked[c]);
+    const double wanted = task_.trim.controls[which] + asked[c];
+    controls[which] = limited(which, wanted);
     given[c] = controls[which] - task_.trim.controls[which];
+    beyond[c] = wanted - controls[which];
   }
   // No integral grows that drives a control further beyond its limit.
   for (Index i = 0; i < ni; ++i) {
     const double growth = step_ * z[integrated_[std::size_t(i)]];
     bool winds_up = false;
     for (Index c = 0; c < nu; ++c) {
-      winds_up = winds_up || (asked[c] - given[c]) * -K_(c, nx + i) * growth > 0.0;
+      winds_up = winds_up || beyond[c] * -K_(c, nx + i) * growth > 0.0;
     }
     if (!winds_up) integrals_[i] += growth;
   }

@@ -216,7 +216,7 @@ StabilityResult flight_stability(AveragedFlight& flight, const TrimResult& stead
   result.trim = steady;
   result.model = linear_flight(flight, steady);
   if (!result.model) {
-    result.periodic_detail = "the vehicle does not flap beside the trim";
+    result.periodic_detail = "the vehicle does not flap near the trim";
     return result;
   }
   const FlightVector steps = steps_of(flight, steady);

@@ -218,8 +218,9 @@ class Writer {
 
   /// Nominal value, and whether events may set it anew: the motion at stops and standstill, not the sums.
   std::string of_state(const Variable& v) const {
-    const bool moves = v.number < layout_.indices.count;
-    const std::size_t before = v.side == 2 ? layout_.count() : 0;
+    const bool moves = v.side != body_side && v.number < layout_.indices.count;
+    const std::size_t drives = has_two_drives(design_) ? 2 : 1;
+    const std::size_t before = layout_.count() * (v.side == body_side ? drives : v.side == 2 ? 1 : 0);
     return attribute("nominal", number(instance_.nominals()[before + v.number])) +
            (moves && has_model_exchange() ? attribute("reinit", "true") : std::string());
   }

@@ -75,6 +75,38 @@ void DriveInTime::build(const Design<double>& design, const Settings& settings) 
   }
   model_ = std::move(next);
   start(settings);
+  feel_flow();
+}
+
+void DriveInTime::feel(std::shared_ptr<const OnsetFlow> flow, const WakeStrips<double>& strips) {
+  flow_ = std::move(flow);
+  strips_ = strips;
+  feel_flow();
+}
+
+void DriveInTime::feel_flow() {
+  if (!flow_) return;
+  model_.vehicle.wings.flow = flow_;
+  model_.vehicle.wings.wake.strips = strips_;
+}
+
+void DriveInTime::scale_to(double voltage) {
+  model_.vehicle.wings.flow = nullptr;
+  model_.scale_to(scaled_to_ = voltage);
+  feel_flow();
+}
+
+detail::DriveInstant DriveInTime::instant_now() const {
+  detail::DriveInstant instant;
+  instant.place = model_.indices.coordinates(model_.coordinates_now().data());
+  instant.at = model_.instant(model_.now.t, instant.place);
+  instant.mode = mode_at(model_.vehicle, instant.at, model_.mode(), &instant.motion);
+  return instant;
+}
+
+MeasuredModel& DriveInTime::begin_step() {
+  apply_inputs();
+  return model_;
 }
 
 void DriveInTime::start(const Settings& settings) {
@@ -141,7 +173,7 @@ void DriveInTime::apply_inputs() {
     model_.set_frequency(inputs_.frequency);
     scaled_to_ = 0.0;
   }
-  if (scale != scaled_to_ && scale > 0.0) model_.scale_to(scaled_to_ = scale);
+  if (scale != scaled_to_ && scale > 0.0) scale_to(scale);
 }
 
 const Vehicle<double>& DriveInTime::vehicle() const { return model_.vehicle; }

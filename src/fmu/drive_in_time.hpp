@@ -2,9 +2,11 @@
 // continuous time with events located from outside, and its steps through them.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "flight/air_on_body.hpp"
 #include "fmu/archive.hpp"
 #include "fmu/measured_model.hpp"
 #include "fmu/variables.hpp"
@@ -59,6 +61,8 @@ class DriveInTime {
   void initialise(const Design<double>& design, const Settings& settings, double time);
   /// Inputs as the vehicle states them; none counts as set.
   void forget_inputs() { inputs_set_ = 0; }
+  /// Its wings feel from now on how a body moves, by these strips.
+  void feel(std::shared_ptr<const OnsetFlow> flow, const WakeStrips<double>& strips);
 
   std::optional<double> input(std::size_t index) const;
   /// False where it cannot be that.
@@ -102,6 +106,10 @@ class DriveInTime {
   /// Through its events to the time `until`, by no more than `work` evaluations of the rates. It stays where it was
   /// but for `reached` and `jammed`.
   StepResult step_to(double until, double tolerance, std::int64_t work);
+  /// What a step of drive and body together takes.
+  MeasuredModel& begin_step();
+  /// Of a drive that feels a flow, as it is now.
+  detail::DriveInstant instant_now() const;
 
   /// What moves, to go back to.
   struct Moving {
@@ -110,6 +118,14 @@ class DriveInTime {
   };
   Moving motion() const;
   void set_motion(const Moving& to);
+  /// What moves, with the inputs.
+  struct Held {
+    Moving moving;
+    Inputs inputs;
+    unsigned inputs_set;
+  };
+  Held hold() const { return {motion(), inputs_, inputs_set_}; }
+  void release(const Held& to);
 
   void save(ArchiveWriter& out) const;
   /// What save() wrote, of the vehicle and settings of then.
@@ -119,10 +135,15 @@ class DriveInTime {
   void start(const Settings& settings);
   void apply_inputs();
   double voltage_scale() const;
+  void feel_flow();
+  /// The sizes of a drive on a body at rest, wherever it flies.
+  void scale_to(double voltage);
 
   bool one_of_two_;
   Inputs inputs_, stated_inputs_;
-  unsigned inputs_set_ = 0;  ///< bits, by index
+  unsigned inputs_set_ = 0;                ///< bits, by index
+  std::shared_ptr<const OnsetFlow> flow_;  ///< none of a vehicle without a body
+  WakeStrips<double> strips_;
   StateLayout layout_;
   MeasuredModel model_;
   std::vector<Watched> watched_;

@@ -20,6 +20,13 @@ void DriveInTime::set_motion(const Moving& to) {
   apply_inputs();
 }
 
+void DriveInTime::release(const Held& to) {
+  inputs_ = to.inputs;
+  inputs_set_ = to.inputs_set;
+  apply_inputs();  // a frequency, before the phase
+  set_motion(to.moving);
+}
+
 void DriveInTime::save(ArchiveWriter& out) const {
   out(inputs_), out(inputs_set_), out(scaled_to_);
   const auto put = [&](const auto& x) { out(x); };
@@ -37,7 +44,7 @@ void DriveInTime::restore(ArchiveReader& in, const Design<double>& design, const
   const auto get = [&](auto& x) { in(x); };
   model_.now.each(model_.now, get);
   model_.means.each(model_.means, get);
-  if (scale > 0.0) model_.scale_to(scaled_to_ = scale);
+  if (scale > 0.0) scale_to(scale);
 }
 
 }  // namespace wingbeat::fmu

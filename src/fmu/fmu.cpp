@@ -4,9 +4,11 @@
 
 #include "fmu/binary/fmi2_functions.h"
 #include "fmu/binary/fmi3_functions.h"
+#include "fmu/body_in_time.hpp"
 #include "fmu/description.hpp"
 #include "fmu/package.hpp"
 #include "fmu/variables.hpp"
+#include "time/time_model.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/vehicle/dynamics.hpp"
 
@@ -25,15 +27,17 @@ std::string oldest_libc() {
 }
 
 std::string documentation_of(const Design<double>& design, const FmuOptions& options) {
-  std::string page = "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>" + markup_escaped(design.name) +
-                     "</title></head>\n<body>\n<h1>" + markup_escaped(design.name.empty() ? "wingbeat" : design.name) +
-                     "</h1>\n<p>A flapping-wing drive as computed by wingbeat " + options.program_version +
-                     ": motor, transmission, springs and wings in blade-element air. All variables are SI and radians. "
-                     "The air meets wings of a body at rest. The binaries need libc and libm alone" +
-                     oldest_libc() +
-                     ".</p>\n"
-                     "<table>\n<tr><th>variable</th><th>unit</th><th>causality</th><th>variability</th>"
-                     "<th>meaning</th></tr>\n";
+  std::string page =
+      "<!DOCTYPE html>\n<html><head><meta charset=\"utf-8\"><title>" + markup_escaped(design.name) +
+      "</title></head>\n<body>\n<h1>" + markup_escaped(design.name.empty() ? "wingbeat" : design.name) +
+      "</h1>\n<p>A flapping-wing drive as computed by wingbeat " + options.program_version +
+      ": motor, transmission, springs and wings in blade-element air. All variables are SI and radians. " +
+      (has_body(design) ? "The wings feel the motion of the body, which the air and gravity move. "
+                        : "The air meets wings of a body at rest. ") +
+      "The binaries need libc and libm alone" + oldest_libc() +
+      ".</p>\n"
+      "<table>\n<tr><th>variable</th><th>unit</th><th>causality</th><th>variability</th>"
+      "<th>meaning</th></tr>\n";
   for (const Variable& v : variables_of(design)) {
     page += "<tr><td><code>" + markup_escaped(v.name) + "</code></td><td>" + markup_escaped(v.unit) + "</td><td>" +
             v.causality + "</td><td>" + v.variability + "</td><td>" + markup_escaped(v.description) + "</td></tr>\n";
@@ -71,9 +75,20 @@ std::string build_description_of(const FmuOptions& options) {
          "  </BuildConfiguration>\n</fmiBuildDescription>\n";
 }
 
+/// As it is flown: a current that settles within a small part of a cycle follows the voltage.
+Design<double> as_flown(Design<double> design) {
+  if (!has_body(design)) return design;
+  flight_vehicle(design);  // refuses what cannot fly
+  detail::TimeModel drive(drive_vehicle(design, has_two_drives(design)), design.supply);
+  drive.start({});
+  if (drive.indices.inductive && drive.stiff()) design.motor.constants.armature_inductance = 0.0;
+  return design;
+}
+
 }  // namespace
 
-FmuContent fmu_content(const Design<double>& design, const FmuOptions& options) {
+FmuContent fmu_content(const Design<double>& stated, const FmuOptions& options) {
+  const Design<double> design = as_flown(stated);
   const Vehicle<double> vehicle = resolve(design);
   if (is_of_further_kind(vehicle) || vehicle.electronics.efficiency != 1.0) {
     const char* section = design.piezo.force_per_volt     ? "piezo"
@@ -81,12 +96,12 @@ FmuContent fmu_content(const Design<double>& design, const FmuOptions& options) 
                           : design.wing.torsion.stiffness ? "wing.torsion"
                                                           : "aerodynamics.angle_of_attack_min";
     const bool beside = jumps_at_pitch_stop(vehicle);
-    throw ParameterError(section, std::string("an FMU does not know it ") + (beside ? "beside added_mass " : "") +
+    throw ParameterError(section, std::string("FMUs do not support it ") + (beside ? "with added_mass " : "") +
                                       "yet: `wingbeat run` and Simulation do");
   }
   if (has_friction(vehicle.pitch.hinge) || vehicle.voltage_offset != 0.0) {
     throw ParameterError(has_friction(vehicle.pitch.hinge) ? "pitch.friction" : "supply.offset",
-                         "an FMU does not know it yet: `wingbeat run` and Simulation do");
+                         "FMUs do not support it yet: `wingbeat run` and Simulation do");
   }
   const AerodynamicsDesign<double>& air = design.aerodynamics;
   if (air.induced_velocity || (air.clap.amplitude && !drive_of(design).stroke_is_fixed)) {

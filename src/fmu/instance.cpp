@@ -18,12 +18,20 @@ std::vector<std::unique_ptr<DriveInTime>> Instance::drives_of(const Design<doubl
 }
 
 Instance::Instance(const Design<double>& design)
-    : given_(design), design_(design), two_(has_two_drives(design)), drives_(drives_of(design)) {}
+    : given_(design), design_(design), two_(has_two_drives(design)), drives_(drives_of(design)) {
+  if (!has_body(design)) return;
+  body_ = std::make_unique<BodyInTime>(design);
+  body_->connect(drives_);
+}
 
 void Instance::reset() {
   design_ = given_;
   settings_ = {};
   changed_ = false;
+  if (body_) {
+    body_ = std::make_unique<BodyInTime>(design_);
+    body_->connect(drives_);
+  }
   for (const auto& drive : drives_) {
     drive->forget_inputs();
     drive->initialise(design_, settings_, 0.0);
@@ -32,8 +40,43 @@ void Instance::reset() {
 
 void Instance::initialise(double time) {
   validate(design_);
+  if (body_) {
+    body_->build(design_);
+    body_->start();
+    body_->connect(drives_);
+  }
   for (const auto& drive : drives_) drive->initialise(design_, settings_, time);
   changed_ = false;
+}
+
+void Instance::meet_air() const {
+  if (!body_) return;
+  if (body_->vehicle().wing_mass > 0.0) body_->air_now(drives_);
+  else body_->set_flows(body_->state);
+}
+
+std::optional<double> Instance::real_of_body(VariableKind kind, std::size_t index) const {
+  if (!body_) return {};
+  const auto one_of = [&](const auto& list) { return index < list.size() ? std::optional(list[index]) : std::nullopt; };
+  switch (kind) {
+    case VariableKind::state: return one_of(body_->numbers());
+    case VariableKind::derivative: {
+      const BodyState rates = body_->rates_in(body_->state, body_->air_now(drives_));
+      std::vector<double> all;
+      BodyState::each(rates, [&](double x) { all.push_back(x); });
+      return one_of(all);
+    }
+    case VariableKind::input: {
+      const double* const input = member_of(body_->inputs, index);
+      return input ? std::optional(*input) : std::nullopt;
+    }
+    case VariableKind::setting: {
+      const double* const setting = member_of(body_->settings, index);
+      return setting ? std::optional(*setting) : std::nullopt;
+    }
+    case VariableKind::output: return one_of(body_->outputs(body_->air_now(drives_)));
+    default: return {};
+  }
 }
 
 const DriveInTime* Instance::drive(std::size_t side) const {
@@ -68,7 +111,12 @@ S Instance::output(OutputId which, std::size_t side, const std::vector<Dynamics<
 std::optional<double> Instance::real(std::size_t reference) const {
   const std::size_t number = number_of(reference), side = side_of(reference), index = index_of(reference);
   const DriveInTime* const one = drive(side);
-  switch (kind_of(reference)) {
+  const VariableKind kind = kind_of(reference);
+  if (side == body_side && kind != VariableKind::parameter && kind != VariableKind::text) {
+    return real_of_body(kind, index);
+  }
+  meet_air();
+  switch (kind) {
     case VariableKind::time: return time();
     case VariableKind::state:
       return one && index < one->layout().count() ? std::optional(one->states()[index]) : std::nullopt;
@@ -124,6 +172,14 @@ std::string Instance::text(std::size_t reference) const {
 
 bool Instance::set_real(std::size_t reference, double value) {
   const std::size_t number = number_of(reference);
+  const bool setting_of_body = kind_of(reference) == VariableKind::setting && side_of(reference) == body_side;
+  if (setting_of_body || (kind_of(reference) == VariableKind::input && side_of(reference) == body_side)) {
+    double* const x = !body_            ? nullptr
+                      : setting_of_body ? member_of(body_->settings, index_of(reference))
+                                        : member_of(body_->inputs, index_of(reference));
+    if (x) *x = value;
+    return x != nullptr;
+  }
   switch (kind_of(reference)) {
     case VariableKind::input: {
       const std::size_t side = side_of(reference);
@@ -155,7 +211,8 @@ bool Instance::set_real(std::size_t reference, double value) {
 }
 
 std::vector<double> Instance::directional(const std::vector<std::size_t>& unknowns,
-                                          const std::vector<Direction>& knowns) const {
+                                          const std::vector<Direction>& knowns) {
+  if (body_) return differences(unknowns, knowns);
   std::vector<Dynamics<Jet<1>>> dynamics;
   const auto by_input = [&](std::size_t side, InputId input) {
     double change = 0.0;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "fmu/body_in_time.hpp"
 #include "fmu/drive_in_time.hpp"
 
 namespace wingbeat::fmu {
@@ -36,7 +37,7 @@ class Instance {
   bool set_real(std::size_t reference, double value);
 
   // ---- continuous time
-  /// Of both drives where there are two, the left one first.
+  /// Of both drives where there are two, the left one first, then of the body where there is one.
   std::size_t state_count() const;
   std::vector<double> states() const;
   void set_states(const double* y);
@@ -52,7 +53,7 @@ class Instance {
     std::size_t reference;
     double change;
   };
-  std::vector<double> directional(const std::vector<std::size_t>& unknowns, const std::vector<Direction>& knowns) const;
+  std::vector<double> directional(const std::vector<std::size_t>& unknowns, const std::vector<Direction>& knowns);
 
   // ---- events
   /// Does what is due.
@@ -62,8 +63,8 @@ class Instance {
   bool ended() const;
 
   // ---- co-simulation
-  /// Through its events to the time `until`, each drive by no more than `work` evaluations of its rates. It stays where
-  /// it was but for `reached` and `jammed`.
+  /// Through its events to the time `until`, each drive, or body and drives together, by no more than `work`
+  /// evaluations of the rates. It stays where it was but for `reached` and `jammed`.
   StepResult step_to(double until, std::int64_t work = step_work);
 
   /// All that changes, as bytes.
@@ -77,6 +78,11 @@ class Instance {
 
  private:
   void apply_parameters();
+  /// What the body's motion is to the drives, before they are asked for anything.
+  void meet_air() const;
+  StepResult fly_to(double until, std::int64_t work);
+  std::vector<double> differences(const std::vector<std::size_t>& unknowns, const std::vector<Direction>& knowns);
+  std::optional<double> real_of_body(VariableKind kind, std::size_t index) const;
   std::vector<std::unique_ptr<DriveInTime>> drives_of(const Design<double>& design) const;
   /// Of the drive that a side is; nullptr where there is none.
   const DriveInTime* drive(std::size_t side) const;
@@ -87,7 +93,8 @@ class Instance {
   bool two_;
   Settings settings_;
   std::vector<std::unique_ptr<DriveInTime>> drives_;
-  bool changed_ = false;  ///< parameters wait to be applied
+  std::unique_ptr<BodyInTime> body_;  ///< none of a vehicle without
+  bool changed_ = false;              ///< parameters wait to be applied
 };
 
 }  // namespace wingbeat::fmu

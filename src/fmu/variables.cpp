@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "fmu/body_variables.hpp"
 #include "fmu/dynamics.hpp"
 #include "wingbeat/vehicle/parameters.hpp"
 
@@ -91,15 +92,6 @@ std::string flat(std::string_view key) {
   return name;
 }
 
-/// What a quantity is shown in.
-std::string display_unit_of(const std::string& name, const std::string& unit) {
-  const bool turns = name.find("crank") != std::string::npos || name == "initial_speed";
-  for (const DisplayUnit& d : display_units) {
-    if (unit == d.unit && (unit != "rad/s" || (std::string_view(d.name) == "rpm") == turns)) return d.name;
-  }
-  return {};
-}
-
 class Table {
  public:
   std::vector<Variable> variables;
@@ -178,7 +170,7 @@ void add_parameters(Table& table, const Design<double>& design) {
     setting(SettingId::pitch_angle, "initial_pitch_angle", "rad", "pitch angle at the start");
     setting(SettingId::pitch_velocity, "initial_pitch_velocity", "rad/s", "its rate at the start");
   }
-  if (has_two_drives(design)) {
+  if (has_two_drives(design) && !has_body(design)) {
     setting(SettingId::hinge_offset, "hinge_offset", "m",
             "from the middle plane of the body to either stroke axis, of the moments on the body")
         .min = 0.0;
@@ -191,6 +183,21 @@ void add_parameters(Table& table, const Design<double>& design) {
 }
 
 }  // namespace
+
+std::string display_unit_of(const std::string& name, const std::string& unit) {
+  const bool turns = name.find("crank") != std::string::npos || name == "initial_speed";
+  for (const DisplayUnit& d : display_units) {
+    if (unit == d.unit && (unit != "rad/s" || (std::string_view(d.name) == "rpm") == turns)) return d.name;
+  }
+  return {};
+}
+
+std::string unit_of_rate(const std::string& unit) {
+  if (unit == "J") return "W";
+  if (unit.ends_with(".s")) return unit.substr(0, unit.size() - 2);
+  if (unit.ends_with("/s")) return unit.substr(0, unit.size() - 2) + "/s2";
+  return unit + "/s";
+}
 
 bool is_tunable(std::string_view key) {
   // What wears, warms up, is adjusted or changes with the weather. Geometry and inertia do not, nor what decides which
@@ -260,7 +267,7 @@ std::vector<Variable> variables_of(const Design<double>& design) {
   const Vehicle<double> vehicle = drive_vehicle(design, has_two_drives(design));
   const StateLayout layout(vehicle);
   const UnknownIndices& indices = layout.indices;
-  const bool two = has_two_drives(design);
+  const bool two = has_two_drives(design), flies = has_body(design);
   const std::size_t first = two ? 1 : 0, last = two ? 2 : 0;
   Table table;
   const auto on_sides = [&](const auto& add) {
@@ -276,6 +283,10 @@ std::vector<Variable> variables_of(const Design<double>& design) {
     table.add(VariableKind::mean, k, row.name, row.unit, std::string(row.description) + " of the last whole cycle",
               "output", "discrete", "calculated");
   };
+  const auto of_body = [&](VariableKind kind) {
+    if (!flies) return;
+    for (Variable& v : body_variables(design, kind)) table.variables.push_back(std::move(v));
+  };
   table.add(VariableKind::time, 0, "time", "s", "simulation time", "independent", "continuous");
   const std::vector<Row> states = state_rows(layout);
   on_sides([&] {
@@ -284,27 +295,27 @@ std::vector<Variable> variables_of(const Design<double>& design) {
                 "calculated");
     }
   });
+  of_body(VariableKind::state);
   on_sides([&] {
     for (std::size_t k = 0; k < states.size(); ++k) {
-      const std::string unit = states[k].unit;
-      const std::string per = unit == "J"            ? "W"
-                              : unit.ends_with(".s") ? unit.substr(0, unit.size() - 2)
-                              : unit.ends_with("/s") ? unit.substr(0, unit.size() - 2) + "/s2"
-                                                     : unit + "/s";
-      Variable& rate = table.add(VariableKind::derivative, k, states[k].name, per,
+      Variable& rate = table.add(VariableKind::derivative, k, states[k].name, unit_of_rate(states[k].unit),
                                  std::string("rate of ") + states[k].name, "local", "continuous", "calculated");
       rate.name = "der(" + rate.name + ")";
     }
   });
+  of_body(VariableKind::derivative);
   on_sides([&] { add_inputs(table, design); });
+  of_body(VariableKind::input);
   for (std::size_t k = 0; two && k < std::size(output_rows); ++k) {
-    if (has_total(OutputId(k))) output(k);
+    // A body has its own moments.
+    if (has_total(OutputId(k)) && !(flies && OutputId(k) >= OutputId::roll_moment)) output(k);
   }
   on_sides([&] {
     for (std::size_t k = 0; k < std::size(output_rows); ++k) {
       if (has_output(OutputId(k), indices)) output(k);
     }
   });
+  of_body(VariableKind::output);
   for (std::size_t k = 0; two && k < std::size(mean_rows); ++k) {
     if (has_total(MeanId(k))) mean(k);
   }
@@ -316,6 +327,7 @@ std::vector<Variable> variables_of(const Design<double>& design) {
               "whole cycles since the start, in either direction", "output", "discrete", "calculated");
   });
   add_parameters(table, design);
+  of_body(VariableKind::setting);
   on_sides([&] {
     for (std::size_t k = 0; k < watched_events(vehicle).size(); ++k) {
       table.add(VariableKind::indicator, k, "event_indicator_" + std::to_string(k + 1), "1",

@@ -106,6 +106,8 @@ struct StateLayout {
 /// side 0 is both together. Of any other vehicle everything is one drive, side 0.
 inline bool has_two_drives(const Design<double>& design) { return design.motors == 2.0; }
 inline constexpr const char* side_names[] = {"", "_left", "_right"};
+/// A body's variables are those of this side, by numbers of their own.
+inline constexpr std::size_t body_side = 3;
 /// A drive of the vehicle as it is switched on. Of two, each is on half of the supply: with twice its resistance both
 /// draw alike what the whole vehicle draws.
 Vehicle<double> drive_vehicle(const Design<double>& design, bool one_of_two);
@@ -149,6 +151,11 @@ std::vector<Watched> watched_events(const Vehicle<double>& vehicle);
 
 /// True for a parameter that may change while the vehicle flies.
 bool is_tunable(std::string_view key);
+
+/// The unit of a rate: "m/s" to "m/s2".
+std::string unit_of_rate(const std::string& unit);
+/// What a quantity is shown in; empty: nothing beside its unit.
+std::string display_unit_of(const std::string& name, const std::string& unit);
 
 /// "kg m2" as FMUs write it: "kg.m2".
 std::string unit_in_fmu(std::string_view unit);

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string_view>
 
+#include "wingbeat/core/math.hpp"
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/parts/blade_element.hpp"
@@ -13,7 +15,12 @@
 namespace wingbeat {
 
 std::string range_message(const char* expected, const char* unit, double value) {
-  return detail::format("%s [%s], got %.10g", expected, unit, value);
+  std::string text = detail::format("%s [%s], got %.10g", expected, unit, value);
+  if (!std::isfinite(value) || value == 0.0) return text;
+  // As the vehicle file has them.
+  if (std::string_view(unit) == "m") text += detail::format(" (%.10g mm)", 1e3 * value);
+  if (std::string_view(unit) == "rad") text += detail::format(" (%.4g deg)", degrees_per_radian * value);
+  return text;
 }
 
 void require(bool condition, const char* key, const char* expected, const char* unit, double value) {

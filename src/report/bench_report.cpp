@@ -115,7 +115,7 @@ const Description<LogNotes::Column>& column_description() {
   using R = LogNotes::Column;
   static const Description<R> description =
       Description<R>()
-          .always("header", "", "as it stands in the file", &R::header)
+          .always("header", "", "as in the file", &R::header)
           .always("read_as", "", "quantity; null where the column is not read",
                   [](const R& r) { return r.name.empty() ? std::nullopt : std::optional(r.name); })
           .always("role", "", "set, measured, not used or not read", [](const R& r) { return role_of(r); })
@@ -157,7 +157,8 @@ const Description<BenchReading>& reading_description() {
           .always("decimal", "", "sign", [](const R& r) { return std::string(r.notes.decimal_comma ? "," : "."); })
           .always("remarks", "", "lines of comments", [](const R& r) { return r.notes.remarks; })
           .always("rows", "", "", [](const R& r) { return r.log.rows.size(); })
-          .always("sorted", "", "rows stood in the order of what was set", [](const R& r) { return r.notes.sorted; })
+          .always("sorted", "", "the rows were in the order of the quantity that was set",
+                  [](const R& r) { return r.notes.sorted; })
           .always("values_left_out", "", "cells without a value", [](const R& r) { return r.log.values_left_out; })
           .always("rows_left_out", "", "lines of rows without what was set or measured",
                   [](const R& r) { return r.log.rows_left_out; })

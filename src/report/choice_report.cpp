@@ -94,7 +94,7 @@ std::string text_choices(const ToleranceStudy& study, const ToleranceResult& res
     text += "\n" +
             wrapped(
                 "Difference: between the largest and the smallest mean of an alternative. Parameters: the "
-                "standard deviation that they cause alone, every choice being made.",
+                "standard deviation by parameters only, pooled over the combinations of choices.",
                 int(report_width), 0) +
             "\n";
   }
@@ -112,7 +112,7 @@ struct AlternativeFound {
 };
 using Effect = std::pair<const ToleranceOutput*, std::size_t>;  ///< of a choice
 
-Description<ConditionalMoments> moments_description() {
+Description<ConditionalMoments> conditional_description() {
   using R = ConditionalMoments;
   return Description<R>()
       .always("count", "", "samples with a value", &R::count)
@@ -125,7 +125,8 @@ Description<Effect> effect_description() {
   return Description<R>()
       .always("difference", "", "between the largest and the smallest mean of an alternative",
               [](const R& r) { return r.first->choices[r.second].difference; })
-      .always("deviation_by_parameters", "", "standard deviation that they cause alone, every choice being made",
+      .always("deviation_by_parameters", "",
+              "standard deviation by parameters only, pooled over the combinations of choices",
               [](const R& r) { return r.first->deviation_by_parameters; });
 }
 
@@ -149,11 +150,11 @@ const Description<AlternativeFound>& alternative_description() {
               [](const R& r) {
                 Json all = Json::object();
                 for (const ToleranceOutput& o : r.found.result.outputs) {
-                  all[o.name] = moments_description().json(o.choices[r.found.place].alternatives[r.place]);
+                  all[o.name] = conditional_description().json(o.choices[r.found.place].alternatives[r.place]);
                 }
                 return all;
               },
-              schema::by_name(moments_description().schema()));
+              schema::by_name(conditional_description().schema()));
   return description;
 }
 

@@ -184,7 +184,7 @@ const Description<ControlFound>& control_description() {
           .always(
               "status", "", "", [](const R& r) { return Json(name_of(r.run().status)); }, schema::statuses())
           .always("status_detail", "", "a sentence with the evidence", [](const R& r) { return describe(r.run()); })
-          .always("domain", "", "inside, or the limits that are left",
+          .always("domain", "", "inside, or the limits that are exceeded",
                   [](const R& r) { return std::string(name_of(r.run().domain)); })
           .always("voltage_v", "V", "of the operating point", metric(Metric::voltage))
           .always("frequency_hz", "Hz", "of the operating point", metric(Metric::frequency))

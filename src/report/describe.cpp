@@ -244,7 +244,7 @@ std::string describe(const EnduranceResult& r) {
             "it hovers for {:.4g} s, until full throttle no longer carries the weight, at a charge of {:.4g}",
             r.endurance(), r.rows.back().charge);
       }
-      return "it hovers to the end; " + end;
+      return "it hovers until the flight ends; " + end;
   }
   return end;
 }

@@ -11,7 +11,7 @@
 namespace wingbeat {
 namespace {
 
-using detail::optimum_width, detail::with_unit;
+using detail::optimum_width, detail::parameter_text, detail::with_unit;
 using Outcome = CombinationOutcome;
 
 /// "6 motors, 12 gearboxes and 8 batteries", without those that cannot be used.
@@ -114,7 +114,7 @@ std::string text_drive_trains(const OptimiseFile& file, const DriveTrainScreen& 
       what = with_unit(t->result.point.metrics[study.objective], metric_info(study.objective).unit);
       for (std::size_t k = 0; k < study.parameters.size(); ++k) {
         const DesignParameter& p = study.parameters[k].parameter;
-        what += fmt::format("; {} {}", p.key, with_unit(t->result.parameters[k], p.unit));
+        what += fmt::format("; {} {}", p.key, parameter_text(t->result.parameters[k], p.unit));
       }
     } else {
       what = describe(nothing_found(trial_study(file, *t), t->result));
@@ -125,7 +125,7 @@ std::string text_drive_trains(const OptimiseFile& file, const DriveTrainScreen& 
     fmt::format_to(out, "{:<50}{}\n", name.size() > 49 ? "" : name,
                    wrapped(std::string(50, '_') + what, optimum_width, 50).substr(50));
   }
-  if (!best) return text + "\nNo combination does it.\n";
+  if (!best) return text + "\nNo combination meets the constraints.\n";
   OptimiseFile of_best = file;
   of_best.study = trial_study(file, *best);
   fmt::format_to(out, "\nBest: {}\n", name_of(file, *best));

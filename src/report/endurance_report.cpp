@@ -88,7 +88,7 @@ std::string plot_title(const EnduranceResult& result) {
     case Hover::never: return "Does not hover; " + flaps;
     case Hover::outside: return "Hover outside the model's domain; " + flaps;
     case Hover::lost: return fmt::format("Hovers for {}, {}", duration(result.hover_lost->time), flaps);
-    case Hover::kept: return fmt::format("Hovers for {}, to the end", duration(result.endurance()));
+    case Hover::kept: return fmt::format("Hovers for {}, until the flight ends", duration(result.endurance()));
   }
   return flaps;
 }
@@ -184,7 +184,7 @@ const Description<EnduranceResult>& endurance_description() {
                   &R::first_full_lift_to_weight)
           .always("end", "", "what ends the flight", [](const R& r) { return name_of(r.end); })
           .always("endurance_s", "s", "flight time until the battery's end", &R::endurance, schema::any_number)
-          .always("domain", "", "inside, or the limits that are left during the flight",
+          .always("domain", "", "inside, or the limits that are exceeded during the flight",
                   [](const R& r) {
                     return r.rows.empty() ? std::nullopt : std::optional<std::string>(name_of(outside(r).second));
                   })
@@ -243,7 +243,7 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
   const auto charge = [](double c) { return fmt::format("{:.2f} %", 100.0 * c); };
   if (!design.name.empty()) text += wrapped(design.name, 88, 0) + "\n";
   if (const auto [rows, limits] = outside(result); rows > 0) {
-    text += wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}) in {} of {} rows of the discharge: what they give is "
+    text += wrapped(fmt::format("OUTSIDE THE MODEL'S DOMAIN ({}) in {} of {} rows of the discharge: these rows are "
                                 "extrapolated.",
                                 name_of(limits), rows, result.rows.size()),
                     88, 2) +
@@ -262,7 +262,7 @@ std::string text_endurance(const Design<double>& design, const EnduranceResult& 
     case Hover::outside:
       line("hovers for", "not claimed", "lift exceeds the weight, but outside the model's domain");
       break;
-    case Hover::kept: line("hovers for", duration(f.time), minutes(f.time) + "   to the end"); break;
+    case Hover::kept: line("hovers for", duration(f.time), minutes(f.time) + "   until the flight ends"); break;
     case Hover::lost: {
       const EnduranceRow& lost = *result.hover_lost;
       line("hovers for", duration(lost.time), minutes(lost.time));

@@ -8,6 +8,7 @@
 
 #include "files/design_write.hpp"
 #include "report/fit_rows.hpp"
+#include "report/report_tools.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/files/units.hpp"
@@ -36,20 +37,34 @@ std::string short_number(double x, int digits = 4) {
   return std::isfinite(x) ? fmt::format("{:.{}g}", x, digits) : "-";
 }
 
+/// As people write it: with an exponent where there would be many zeros.
+std::string with_digits(double x, int digits) {
+  if (!std::isfinite(x)) return "-";
+  if (x == 0.0) return "0";
+  const double size = std::abs(x);
+  if (size < 1e-3 || size >= 1e5) return fmt::format("{:.{}e}", x, digits - 1);
+  return fmt::format("{:.{}f}", x, std::max(0, digits - 1 - int(std::floor(std::log10(size)))));
+}
+
 /// Phases and zeros of logs stand apart: nobody asks for them, and there may be many.
 bool is_asked_for(const FittedParameter& p) { return p.of != FittedParameter::Of::log; }
 
 /// One row of the table of parameters.
 std::string parameter_row(const FittedParameter& p) {
   if (!p.value) return fmt::format("{:<32}{:>11}  {}\n", p.key, "unknown", describe(p.undetermined));
+  const detail::ShownUnit shown = detail::shown_unit(p.unit);
+  const double f = shown.factor;
+  const char* bound = p.at_bound ? "  AT ITS BOUND" : "";
   if (!std::isfinite(p.standard_error)) {
-    return fmt::format("{:<32}{:>11.4e}{:>9}  {:^22}  {}{}\n", p.key, *p.value, "-", "-", p.unit,
-                       p.at_bound ? "  AT ITS BOUND" : "");
+    return fmt::format("{:<32}{:>11}{:>9}  {:^22}  {}{}\n", p.key, with_digits(f * *p.value, 5), "-", "-", shown.name,
+                       bound);
   }
   const bool profiled = std::isfinite(p.profile_lower_95) && std::isfinite(p.profile_upper_95);
-  return fmt::format("{:<32}{:>11.4e}{:>9.1e}  {:>10.3e} .. {:<9.3e}{} {}{}\n", p.key, *p.value, p.standard_error,
-                     profiled ? p.profile_lower_95 : p.lower_95, profiled ? p.profile_upper_95 : p.upper_95,
-                     profiled ? "" : "*", p.unit, p.at_bound ? "  AT ITS BOUND" : "");
+  const double low = f * (profiled ? p.profile_lower_95 : p.lower_95);
+  const double high = f * (profiled ? p.profile_upper_95 : p.upper_95);
+  return fmt::format("{:<32}{:>11}{:>9}  {:>10} .. {:<10} {}{}\n", p.key, with_digits(f * *p.value, 5),
+                     with_digits(f * p.standard_error, 2), with_digits(low, 4),
+                     with_digits(high, 4) + (profiled ? "" : "*"), shown.name, bound);
 }
 
 /// Phases and zeros of the logs.
@@ -57,7 +72,7 @@ std::string of_logs(const FitResult& r) {
   std::string text;
   for (const FittedParameter& p : r.parameters) {
     if (is_asked_for(p)) continue;
-    if (text.empty()) text = "\nFitted beside them\n";
+    if (text.empty()) text = "\nAlso fitted\n";
     const bool angle = p.unit == "rad";
     const double factor = angle ? degrees_per_radian : 1.0;
     const std::string value = !p.value ? "unknown"
@@ -155,7 +170,7 @@ std::string describe(const FitFinding& f) {
       return fmt::format("known only roughly: {} ({:.0f} %)", direction(f), 100.0 * f.relative_error);
     case FitFinding::Kind::determined: return "the data determine " + list(f.parameters);
     case FitFinding::Kind::most_correlated:
-      return fmt::format("most alike are {} and {} (correlation {:+.2f})", f.parameters[0], f.parameters[1],
+      return fmt::format("the strongest correlation is that of {} and {} ({:+.2f})", f.parameters[0], f.parameters[1],
                          f.numbers[0]);
     case FitFinding::Kind::determined_by: return fmt::format("only {} determines {}", f.condition, list(f.parameters));
     case FitFinding::Kind::narrowed_by: {
@@ -186,12 +201,12 @@ std::string describe(const Misfit& m) {
   const QuantityResiduals& q = m.worst;
   if (q.estimated) {
     return fmt::format(
-        "the residuals of {} are on the average {:.3g} times the spread of its values and {:.3g} times their size{}",
+        "the residuals of {} are on average {:.3g} times the spread of its values and {:.3g} times their size{}",
         name_of(q.quantity), std::sqrt(q.unexplained), q.relative, proportion(q));
   }
   return fmt::format(
       "chi square is {:.4g} where {:.4g} degrees of freedom lead to expect {:.4g} +- {:.2g}: the values lie {:.3g} "
-      "times their stated deviations from the model on the average; worst is {}, {:.3g} times its deviation{}",
+      "times their stated deviations from the model on average; worst is {}, {:.3g} times its deviation{}",
       m.chi_square, m.freedom, m.freedom, m.spread, m.rms_deviations, name_of(q.quantity), q.rms, proportion(q));
 }
 
@@ -348,11 +363,13 @@ std::string fitted_vehicle_head(const BenchFit& fit, const FitResult& r, const s
   std::string text = fmt::format("# {}\n", one_line(made_by, 200));
   for (const FittedParameter& p : r.parameters) {
     if (!is_asked_for(p)) continue;
+    const detail::ShownUnit shown = detail::shown_unit(p.unit);
     if (p.value) {
-      text += fmt::format("# {} = {:.6g} +- {:.2g} {}\n", p.key, *p.value, p.standard_error, p.unit);
+      text += fmt::format("# {} = {:.6g} +- {:.2g} {}\n", p.key, shown.factor * *p.value,
+                          shown.factor * p.standard_error, shown.name);
     } else {
-      text +=
-          fmt::format("# {}: not determined ({}); keeps {:.6g} {}\n", p.key, describe(p.undetermined), p.kept, p.unit);
+      text += fmt::format("# {}: not determined ({}); keeps {:.6g} {}\n", p.key, describe(p.undetermined),
+                          shown.factor * p.kept, shown.name);
     }
   }
   for (const UnreachedRow& u : r.unreached) {

@@ -35,7 +35,7 @@ const Description<FittedParameter>& fitted_parameter_description() {
       Description<R>()
           .always("key", "", "of the vehicle file", &R::key)
           .always("unit", "", "", &R::unit)
-          .always("of", "", "vehicle, balance or log: what it is a number of", &R::of)
+          .always("of", "", "vehicle, balance or log that has the parameter", &R::of)
           .always("value", "", "null where the data do not determine it", &R::value)
           .always(
               "standard_error", "", "",

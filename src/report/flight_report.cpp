@@ -124,7 +124,7 @@ std::string text_stability(const StabilityReport& report) {
   if (!r.model) return text;
   text += "\nModes, the least stable first; real part and angular frequency in 1/s\n";
   text += fmt::format("  {:<13} {:<27} {:<27} {:>16}  {}\n", "", "averaged over the wingbeat", "Floquet, whole flight",
-                      "apart", "averaged");
+                      "difference", "averaged");
   for (const FlightMode& mode : r.modes) {
     const auto shown = [](const auto& s) { return s ? number_text(*s) : std::string("         -"); };
     const double apart = mode.apart();
@@ -297,7 +297,8 @@ const Description<StabilityReport>& stability_description() {
                  flight_mode_description(), [](const R& r) { return r.result.modes; })
           .always("periodic", "", "a flight that repeats with the wingbeat was found",
                   [](const R& r) { return r.result.periodic.has_value(); })
-          .always("periodic_detail", "", "why not, else empty", [](const R& r) { return r.result.periodic_detail; })
+          .always("periodic_detail", "", "reason if there is no Floquet result, otherwise empty",
+                  [](const R& r) { return r.result.periodic_detail; })
           .parts("sensitivities", "with --sensitivity, the largest first", sensitivity_description(), &R::sensitivities)
           .always("scatter_per_s", "1/s",
                   "standard deviation of that real part over the relative one of all parameters, to first order",

@@ -12,6 +12,7 @@
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/files/input_file.hpp"
 #include "wingbeat/files/units.hpp"
+#include "wingbeat/parts/motor_thermal.hpp"
 #include "wingbeat/report/report.hpp"
 
 namespace wingbeat {
@@ -54,7 +55,7 @@ std::string thermal_lines(const MotorIdentification& motor, const MotorDatasheet
                         unit_of(which));
   }
   if (sheet.winding_temperature_max) {
-    text += fmt::format("winding_temperature_max = \"{} K\"\n", *sheet.winding_temperature_max);
+    text += fmt::format("winding_temperature_max = \"{:.12g} degC\"\n", *sheet.winding_temperature_max - zero_celsius);
   }
   return text;
 }
@@ -107,7 +108,8 @@ std::string motor_section(const MotorIdentification& motor, const MotorDatasheet
   const double n = shaft == Shaft::motor ? sheet.gear_ratio : 1.0;
   if (shaft == Shaft::motor) text += fmt::format("gear_ratio = {}\n", n);
   for (const Constant& c : constants) {
-    text += fmt::format("{} = \"{} {}\"\n", c.key, *(motor.*c.value).value / std::pow(n, c.power), c.unit);
+    const double value = without_rounding_errors(*(motor.*c.value).value / std::pow(n, c.power));
+    text += fmt::format("{} = \"{} {}\"\n", c.key, value, c.unit);
   }
   if (sheet.gear_efficiency) text += fmt::format("gear_efficiency = {}\n", *sheet.gear_efficiency);
   return text + thermal_lines(motor, sheet);
@@ -129,16 +131,20 @@ std::string text_identification(const MotorIdentification& motor, const MotorDat
     }
   }
   if (!motor.checks.empty()) {
-    text += "\nThe sheet beside the identified motor    published    identified   deviation\n";
+    text += fmt::format("\n{:<38}{:>20}{:>20}{:>12}\n", "The sheet and the identified motor", "published", "identified",
+                        "deviation");
     for (const DatasheetCheck& c : motor.checks) {
-      text += fmt::format("  {:<34}{:>14.4g}{:>14.4g}{:>12}\n", detail::spaced(c.name), c.published, c.identified,
-                          fmt::format("{:+.1f} %", 100.0 * c.deviation));
+      text += fmt::format("  {:<36}{:>20}{:>20}{:>12}\n", detail::spaced(c.name), datasheet_text(c.published, c.unit),
+                          datasheet_text(c.identified, c.unit), fmt::format("{:+.1f} %", 100.0 * c.deviation));
     }
   }
   if (!motor.contradictions.empty()) {
     text += "\nContradictions of the sheet\n";
     for (const Contradiction& c : motor.contradictions) {
-      text += "  " + wrapped(fmt::format("{}: {:.4g} and {:.4g}", sentence(c), c.first_value, c.second_value), 88, 4) +
+      text += "  " +
+              wrapped(fmt::format("{}: {} and {}", sentence(c), datasheet_text(c.first_value, c.unit),
+                                  datasheet_text(c.second_value, c.unit)),
+                      88, 4) +
               "\n";
     }
   }
@@ -172,7 +178,7 @@ const Description<ConstantFound>& constant_description() {
               [](const R& r) { return r.found.value ? Json(r.found.standard_error) : Json(nullptr); },
               schema::number_if_any)
           .always("unit", "", "", [](const R& r) { return r.constant.unit; })
-          .always("source", "", "what it rests on, or what is missing", [](const R& r) { return r.found.source; });
+          .always("source", "", "its source, or what is missing", [](const R& r) { return r.found.source; });
   return description;
 }
 
@@ -192,8 +198,8 @@ const Description<Contradiction>& contradiction_description() {
   static const Description<R> description =
       Description<R>()
           .always("constant", "", "", &R::constant)
-          .always("first", "", "what the first value rests on", &R::first)
-          .always("second", "", "what the second value rests on", &R::second)
+          .always("first", "", "source of the first value", &R::first)
+          .always("second", "", "source of the second value", &R::second)
           .always("first_value", "", "", &R::first_value, schema::any_number)
           .always("second_value", "", "", &R::second_value, schema::any_number)
           .always("size", "1", "relative difference", &R::size, schema::any_number)

@@ -45,7 +45,7 @@ std::string text_kinematics(const WrittenKinematics& w) {
   text += fmt::format("  {:<16}{:>10.3f} to {:>8.3f} deg{}\n", "Pitch angle", degrees_per_radian * w.pitch_min,
                       degrees_per_radian * w.pitch_max, w.twists ? ", of the root" : "");
   if (w.format == KinematicsFormat::load_table) {
-    text += fmt::format("\n{} rows of loads, over a grid that goes a fifth further\n", w.rows);
+    text += fmt::format("\n{} rows of loads; the grid is a fifth wider than the motion\n", w.rows);
   } else if (w.format == KinematicsFormat::csv) {
     text += fmt::format("\n{} instants equally spaced in time, both ends included\n", w.rows);
   } else if (w.stroke && w.pitch) {
@@ -70,8 +70,7 @@ std::string describe(LoadQuantity quantity, const LoadDisagreement& d) {
   if (std::isfinite(d.ratio) && std::abs(d.mean_simulated) > small_mean * d.rms_simulated) {
     text = fmt::format("The model's mean {} is {:.3g} times the simulated one. ", name, d.ratio);
   } else {
-    text = fmt::format("The mean {} is near zero beside its variation, so that the ratio of the means means little. ",
-                       name);
+    text = fmt::format("The mean {} is small compared with its variation: do not use the ratio of the means. ", name);
   }
   if (!std::isfinite(d.correlation)) return text + "One of the two is constant over the cycle.";
   if (d.correlation < -0.5) {
@@ -84,7 +83,7 @@ std::string describe(LoadQuantity quantity, const LoadDisagreement& d) {
                       share_text(d.variance_in_phase));
   const char* remedy =
       d.share_phase > d.share_mean + d.share_size
-          ? "no factor on the coefficients removes that; look at rotation, added mass and wake, or at the motion"
+          ? "no factor on the coefficients removes this part; check rotation, added mass, wake and the motion"
       : d.share_mean > d.share_size ? "a factor on the coefficients that brings the means together removes that"
                                     : "a factor on the coefficients that scales the variation removes that";
   const double largest = std::max({d.share_mean, d.share_size, d.share_phase});

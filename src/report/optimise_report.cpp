@@ -14,15 +14,36 @@
 namespace wingbeat {
 namespace {
 
-using detail::optimum_width, detail::with_unit;
+using detail::optimum_width, detail::parameter_text, detail::shown_unit, detail::with_unit;
+
+/// "stroke_amplitude_rad <= 1.0472 (60 deg)"
+std::string limit_text(const MetricConstraint& c) {
+  const bool angle = std::string_view(metric_info(c.metric).unit) == "rad";
+  return angle ? fmt::format("{} ({:.5g} deg)", name_of(c), degrees_per_radian * c.limit) : name_of(c);
+}
+
+/// A limit as it is read in the report: a parameter's bound in the unit of the table above it.
+std::string limit_text(const OptimiseStudy& study, const ActiveLimit& a) {
+  for (const OptimisedParameter& p : study.parameters) {
+    for (const auto& [sense, bound] : {std::pair(" >= ", p.lower), std::pair(" <= ", p.upper)}) {
+      if (!a.name.starts_with(p.parameter.key + sense)) continue;
+      const detail::ShownUnit shown = shown_unit(p.parameter.unit);
+      return fmt::format("{}{}{:.6g}{}", p.parameter.key, sense, shown.factor * bound, shown.suffix());
+    }
+  }
+  for (const MetricConstraint& c : study.constraints) {
+    if (a.name == name_of(c)) return limit_text(c);
+  }
+  return a.name;
+}
 
 /// What holds an optimum and how flat it is.
 template <class Out>
 void text_neighbourhood(Out& out, const OptimiseStudy& study, const OptimiseResult& r) {
-  fmt::format_to(out, "\nWhat holds it{:>52}\n", "tightened by 1 %: worse by");
+  fmt::format_to(out, "\nWhat limits it{:>51}\n", "tightened by 1 %: worse by");
   for (const ActiveLimit& a : r.active) {
     const std::string worse = std::isfinite(a.sensitivity) ? fmt::format("{:.2g} %", a.sensitivity) : "-";
-    fmt::format_to(out, "  {:<44}{:>18}\n", a.name, worse);
+    fmt::format_to(out, "  {:<44}{:>18}\n", limit_text(study, a), worse);
   }
   if (r.active.empty()) fmt::format_to(out, "  no constraint and no bound: the optimum lies inside\n");
   if (std::any_of(r.active.begin(), r.active.end(), [](const ActiveLimit& a) { return a.domain; })) {
@@ -42,8 +63,9 @@ void text_neighbourhood(Out& out, const OptimiseStudy& study, const OptimiseResu
       const OptimisedParameter& p = study.parameters[k];
       // Only what moves visibly.
       if (std::abs(d.to[k] - d.from[k]) < 1e-3 * (p.upper - p.lower)) continue;
-      fmt::format_to(out, "    {:<32}{:>13.5g} .. {:<.5g}{}\n", p.parameter.key, d.from[k], d.to[k],
-                     p.parameter.unit == "1" ? "" : " " + p.parameter.unit);
+      const detail::ShownUnit shown = shown_unit(p.parameter.unit);
+      fmt::format_to(out, "    {:<32}{:>13.5g} .. {:<.5g}{}\n", p.parameter.key, shown.factor * d.from[k],
+                     shown.factor * d.to[k], shown.suffix());
     }
   }
 }
@@ -90,7 +112,7 @@ std::string describe(const NothingFound& n) {
   for (std::size_t c = 0; c < n.constraints.size(); ++c) {
     if (screen.violated[c] == 0) continue;
     text +=
-        fmt::format("; {}: {} of {} {} break it, the best of them reaches {}", name_of(n.constraints[c]),
+        fmt::format("; {}: {} of {} {} break it, the best of them reaches {}", limit_text(n.constraints[c]),
                     screen.violated[c], screen.status[0] - screen.outside, screen.outside > 0 ? "inside" : "that flap",
                     with_unit(screen.closest[c], metric_info(n.constraints[c].metric).unit));
   }
@@ -107,7 +129,7 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   const MetricInfo& objective = metric_info(study.objective);
   std::string asked = fmt::format("{} {}", study.maximise ? "maximise" : "minimise", objective.key);
   std::vector<std::string> limits;
-  for (const MetricConstraint& c : study.constraints) limits.push_back(name_of(c));
+  for (const MetricConstraint& c : study.constraints) limits.push_back(limit_text(c));
   const std::vector<std::string> torques = limit_names(study.gear_torque);
   limits.insert(limits.end(), torques.begin(), torques.end());
   for (std::size_t l = 0; l < limits.size(); ++l) asked += (l == 0 ? " with " : ", ") + limits[l];
@@ -119,7 +141,7 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   fmt::format_to(out, "\nscreened {} designs: {} flap, {} of these within every constraint\n", screened,
                  r.screen.status[0], r.screen.feasible);
   if (r.screen.outside > 0) {
-    fmt::format_to(out, "{} that flap are outside the model's domain and do not count\n", r.screen.outside);
+    fmt::format_to(out, "{} that flap are outside the model's domain and are excluded\n", r.screen.outside);
   }
   if (study.allow_extrapolation)
     fmt::format_to(out, "designs outside the model's domain count: extrapolation is allowed\n");
@@ -127,7 +149,7 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
     fmt::format_to(out, "{}\n", wrapped("No design found: " + describe(nothing_found(study, r)), optimum_width, 2));
     return text;
   }
-  fmt::format_to(out, "{} starts: {} ended in the best optimum, {} in a worse one, {} found nothing\n\n", r.starts,
+  fmt::format_to(out, "{} starts: {} ended in the best optimum, {} in a worse one, {} without a result\n\n", r.starts,
                  r.same, r.elsewhere, r.failed);
   fmt::format_to(out, "{} {}: {}\n", study.maximise ? "most" : "least", objective.long_name,
                  with_unit(r.point.metrics[study.objective], objective.unit));
@@ -142,8 +164,9 @@ std::string text_optimum(const OptimiseFile& file, const OptimiseResult& r) {
   }
   for (std::size_t k = 0; k < study.parameters.size(); ++k) {
     const OptimisedParameter& p = study.parameters[k];
-    fmt::format_to(out, "  {:<34}{:>13.5g}{:>13.5g}{:>13.5g} {}\n", p.parameter.key, r.parameters[k], p.lower, p.upper,
-                   p.parameter.unit == "1" ? "" : p.parameter.unit);
+    const detail::ShownUnit shown = shown_unit(p.parameter.unit);
+    fmt::format_to(out, "  {:<34}{:>13.5g}{:>13.5g}{:>13.5g}{}\n", p.parameter.key, shown.factor * r.parameters[k],
+                   shown.factor * p.lower, shown.factor * p.upper, shown.suffix());
   }
   if (!study.parameters.empty()) text_neighbourhood(out, study, r);
   // The flight's throttle follows the weight; the cycle's metrics are those of the duty that is stated.
@@ -187,7 +210,7 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
       what = with_unit(t->result.point.metrics[study.objective], metric_info(study.objective).unit);
       for (std::size_t k = 0; k < study.parameters.size(); ++k) {
         const DesignParameter& p = study.parameters[k].parameter;
-        what += fmt::format("; {} {}", p.key, with_unit(t->result.parameters[k], p.unit));
+        what += fmt::format("; {} {}", p.key, parameter_text(t->result.parameters[k], p.unit));
       }
       if (t->motor) {
         for (const std::string& derived : t->motor->derived) what += "; " + derived;
@@ -200,7 +223,8 @@ std::string text_motors(const OptimiseFile& file, std::span<const MotorTrial> tr
                    wrapped(std::string(30, '_') + what, optimum_width, 30).substr(30));
   }
   if (!best) {
-    return text + (file.motors.empty() ? "\nNone of the choices does it.\n" : "\nNo motor of the catalogue does it.\n");
+    return text + (file.motors.empty() ? "\nNone of the choices meets the constraints.\n"
+                                       : "\nNo motor of the catalogue meets the constraints.\n");
   }
   OptimiseFile of_best = file;
   of_best.study = trial_study(file, *best);

@@ -49,7 +49,7 @@ const Description<ActiveLimit>& active_description() {
   using R = ActiveLimit;
   static const Description<R> description =
       Description<R>()
-          .always("limit", "", "constraint or bound that holds the optimum", &R::name)
+          .always("limit", "", "constraint or bound that limits the optimum", &R::name)
           .always("sensitivity", "1", "relative loss for a relative tightening of the limit", &R::sensitivity);
   return description;
 }
@@ -74,7 +74,7 @@ const Description<OptimiseResult>& starts_description() {
                                                 .always("all", "", "starts of a local search", &R::starts)
                                                 .always("same", "", "ended in this optimum", &R::same)
                                                 .always("elsewhere", "", "ended in a worse one", &R::elsewhere)
-                                                .always("failed", "", "found nothing", &R::failed);
+                                                .always("failed", "", "without a result", &R::failed);
   return description;
 }
 
@@ -127,9 +127,9 @@ Description<OptimumFound> made_optimum_description(bool drive_train) {
                   [](const R& r) {
                     return r.found() ? std::nullopt : std::optional(describe(nothing_found(r.study, r.result)));
                   })
-          .always("domain", "", "inside, or the limits that are left",
+          .always("domain", "", "inside, or the limits that are exceeded",
                   of_the_optimum([](const R& r) { return std::string(name_of(r.result.point.domain)); }))
-          .always("limited_by_domain", "", "a limit of the model's domain holds the optimum",
+          .always("limited_by_domain", "", "a limit of the model's domain is active at the optimum",
                   of_the_optimum([](const R& r) {
                     return std::any_of(r.result.active.begin(), r.result.active.end(),
                                        [](const ActiveLimit& a) { return a.domain; });
@@ -146,7 +146,7 @@ Description<OptimumFound> made_optimum_description(bool drive_train) {
           .part("metrics", "of the optimum", metrics_description(),
                 [](const R& r) { return r.found() ? &r.result.point.metrics : nullptr; })
           .always(
-              "active", "", "what holds the optimum",
+              "active", "", "active constraints and bounds",
               [](const R& r) { return r.found() ? active_description().list(r.result.active) : Json(nullptr); },
               schema::or_null(schema::listed(active_description().schema())))
           .always(
@@ -312,7 +312,7 @@ const Description<FrontDesign>& front_design_description() {
               schema::by_name(schema::any_number))
           .part("metrics", "", metrics_description(),
                 [](const R& r) -> const Metrics<double>& { return r.design.metrics; })
-          .always("domain", "", "inside, or the limits that are left",
+          .always("domain", "", "inside, or the limits that are exceeded",
                   [](const R& r) { return std::string(name_of(r.design.domain)); });
   return description;
 }

@@ -155,7 +155,7 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
   fmt::format_to(out, "{}\nscreened {} designs: {} flap, {} of these within every constraint\n",
                  wrapped(aims, optimum_width, 0), study.screen, r.screen.status[0], r.screen.feasible);
   if (r.screen.outside > 0) {
-    fmt::format_to(out, "{} that flap are outside the model's domain and do not count\n", r.screen.outside);
+    fmt::format_to(out, "{} that flap are outside the model's domain and are excluded\n", r.screen.outside);
   }
   if (study.allow_extrapolation)
     fmt::format_to(out, "designs outside the model's domain count: extrapolation is allowed\n");
@@ -211,7 +211,8 @@ std::string text_front(const OptimiseFile& file, const ParetoStudy& study, const
     for (const Metric m : limited_metrics(study)) metric(m);
     const auto parameters = parameters_of(study);
     for (std::size_t k = 0; k < parameters.size(); ++k) {
-      row(parameters[k]->key, parameters[k]->unit, [&](const ParetoDesign& d) { return d.parameters[k]; });
+      const detail::ShownUnit shown = detail::shown_unit(parameters[k]->unit);
+      row(parameters[k]->key, shown.name, [&](const ParetoDesign& d) { return shown.factor * d.parameters[k]; });
     }
     if (study.vehicles.size() > 1) {
       for (std::size_t c = first; c < last; ++c) {

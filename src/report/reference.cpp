@@ -229,7 +229,7 @@ const Description<ParameterText>& key_description() {
           .always("range", "", "", [](const R& r) { return std::string(r.range.text); })
           .always("default", "", "", [](const R& r) { return default_text(r); })
           .always("meaning", "", "", &R::meaning)
-          .always("only_with", "", "what the vehicle file must state beside it",
+          .always("only_with", "", "another key that the vehicle file must have",
                   [](const R& r) { return text_if_any(with_or(r.only_with)); });
   return description;
 }

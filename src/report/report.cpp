@@ -269,7 +269,7 @@ std::string text_report(const RunResult& result, const RunOptions& options) {
     table.line("duty", fmt::format("{:.4g}", result.design.supply.duty), "of the battery's voltage");
   }
   if (result.design.motors > 1.0) {
-    table.line("motors", fmt::format("{:.0f}", result.design.motors), "currents, powers and lift are of all of them");
+    table.line("motors", fmt::format("{:.0f}", result.design.motors), "totals of all motors");
   }
   table.metric("flapping frequency", Metric::frequency, "Hz");
   table.metric("mean current", Metric::current_mean, "A");

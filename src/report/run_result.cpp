@@ -84,13 +84,13 @@ const Description<RunResult>& run_description() {
   static const Description<R> description =
       Description<R>()
           .always(
-              "status", "", "null where undecided",
+              "status", "", "null if undecided",
               [](const R& r) {
                 return r.status == FlappingStatus::undecided ? Json(nullptr) : Json(name_of(r.status));
               },
               schema::or_null(schema::statuses()))
           .always("status_detail", "", "a sentence with the evidence", [](const R& r) { return describe(r); })
-          .always("domain", "", "inside, or the limits that are left",
+          .always("domain", "", "inside, or the limits that are exceeded",
                   [](const R& r) {
                     const bool assessed =
                         r.status == FlappingStatus::flapping && std::isfinite(r.metrics[Metric::frequency]);

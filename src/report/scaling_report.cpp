@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "report/described.hpp"
+#include "report/report_tools.hpp"
 #include "report/result_schemas.hpp"
 
 namespace wingbeat {
@@ -19,7 +20,9 @@ std::string text_scaling(const ScaledDesign& scaled, double factor) {
   std::string text = fmt::format("{:<36}{:>14}{:>14}  {:<12}{}\n", "Number", "before", "after", "unit",
                                  fmt::format("factor {:g} to the", factor));
   for (const ScaledParameter& p : scaled.parameters) {
-    text += fmt::format("{:<36}{:>14.6g}{:>14.6g}  {:<12}{}\n", p.key, p.before, p.after, p.unit, p.exponent);
+    const detail::ShownUnit shown = detail::shown_unit(p.unit);
+    text += fmt::format("{:<36}{:>14.6g}{:>14.6g}  {:<12}{}\n", p.key, shown.factor * p.before, shown.factor * p.after,
+                        shown.name, p.exponent);
   }
   if (scaled.chords) text += fmt::format("{:<78}{}\n", "wing.planform.chords, every radius and chord", 1);
   return text;

@@ -91,10 +91,10 @@ std::string why_not_found(const SynthesisedMechanism& m, TransmissionType type) 
   }
   const double best = m.quality.transmission_angle;
   if (!std::isnan(best)) text += fmt::format("; the best one keeps {:.3g} deg", degrees(best));
-  if (type == TransmissionType::slider_crank) return text + "; more room or shorter links would do";
+  if (type == TransmissionType::slider_crank) return text + "; allow more space or shorter links";
   return text + (std::isnan(m.ratio_needed)
                      ? "; nor has one of any larger stroke ratio"
-                     : fmt::format("; a stroke ratio of {:.4g} would do, with a gear pair or string", m.ratio_needed));
+                     : fmt::format("; a stroke ratio of {:.4g} is enough, with a gear pair or string", m.ratio_needed));
 }
 
 namespace described {

@@ -52,7 +52,7 @@ std::string text_tolerance(const ToleranceStudy& study, const ToleranceResult& r
   if (!study.title.empty()) fmt::format_to(out, "{}\n", wrapped(study.title, 100, 0));
   const char* method = study.method == ToleranceMethod::sobol ? "scrambled Sobol" : "Monte Carlo";
   fmt::format_to(out, "{} {} samples", base_count(study), method);
-  if (study.indices) fmt::format_to(out, ", {} vehicles with those for the indices", result.vehicles);
+  if (study.indices) fmt::format_to(out, ", {} vehicles including those for the indices", result.vehicles);
   if (study.hold) text += "; " + describe(*study.hold);
   text += "\n\n" + text_uncertain(study);
   for (const ModelChoice& choice : study.choices) {

@@ -91,10 +91,10 @@ const Description<RunResult>& side_description() {
   static const Description<R> description =
       Description<R>()
           .always(
-              "status", "", "null where undecided", [](const R& r) { return status_json(r.status); },
+              "status", "", "null if undecided", [](const R& r) { return status_json(r.status); },
               schema::or_null(schema::statuses()))
           .always("status_detail", "", "a sentence with the evidence", [](const R& r) { return describe(r); })
-          .always("domain", "", "inside, or the limits that are left; null unless flapping",
+          .always("domain", "", "inside, or the limits that are exceeded; null unless flapping",
                   [](const R& r) {
                     const bool flaps = r.status == FlappingStatus::flapping;
                     return flaps ? std::optional<std::string>(name_of(r.domain)) : std::nullopt;
@@ -109,7 +109,7 @@ const Description<TwoSidesResult>& two_sides_description() {
   static const Description<R> description =
       Description<R>()
           .always(
-              "status", "", "flapping where both sides do, else that of the side which does not; null where undecided",
+              "status", "", "flapping if both sides flap, otherwise the status of the other side; null if undecided",
               [](const R& r) { return status_json(r.status); }, schema::or_null(schema::statuses()))
           .all_of(cycle_metrics_description(), &R::metrics)
           .part("left", "the left side as a vehicle of its own", side_description(), &R::left)

@@ -5,21 +5,27 @@
 #include <cmath>
 #include <iterator>
 
+#include "report/report_tools.hpp"
+
 namespace wingbeat {
 namespace {
 
 std::string spread_text(const Distribution& d, bool correlated, const std::string& unit) {
-  const std::string u = unit == "1" ? "" : " " + unit;
+  const detail::ShownUnit shown = detail::shown_unit(unit);
+  const std::string u = shown.suffix();
+  const double f = shown.factor;
   std::string text;
   switch (d.kind) {
-    case DistributionKind::uniform: return fmt::format("uniform, {:.4g} to {:.4g}{}", d.lower, d.upper, u);
-    case DistributionKind::normal: text = fmt::format("normal, {:.4g} +- {:.2g}{}", d.centre, d.spread, u); break;
+    case DistributionKind::uniform: return fmt::format("uniform, {:.4g} to {:.4g}{}", f * d.lower, f * d.upper, u);
+    case DistributionKind::normal:
+      text = fmt::format("normal, {:.4g} +- {:.2g}{}", f * d.centre, f * d.spread, u);
+      break;
     case DistributionKind::lognormal:
-      text = fmt::format("lognormal, median {:.4g}{}, factor {:.3g}", d.centre, u, std::exp(d.spread));
+      text = fmt::format("lognormal, median {:.4g}{}, factor {:.3g}", f * d.centre, u, std::exp(d.spread));
       break;
   }
-  if (std::isfinite(d.lower)) text += fmt::format(", not below {:.4g}", d.lower);
-  if (std::isfinite(d.upper)) text += fmt::format(", not above {:.4g}", d.upper);
+  if (std::isfinite(d.lower)) text += fmt::format(", not below {:.4g}{}", f * d.lower, u);
+  if (std::isfinite(d.upper)) text += fmt::format(", not above {:.4g}{}", f * d.upper, u);
   return text + (correlated ? ", correlated" : "");
 }
 

@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "report/described.hpp"
+#include "report/report_tools.hpp"
 #include "report/result_schemas.hpp"
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/report/fit_report.hpp"
@@ -57,12 +58,14 @@ std::string stage_text(const ValidationStage& stage, std::size_t n) {
   std::string out =
       block(fmt::format("  ({}) ", letter(n)), 6, stage.name + (stage.variant.empty() ? "" : ": " + stage.variant));
   for (const FittedParameter& p : stage.parameters) {
-    const std::string unit = p.unit == "1" ? "" : " " + p.unit;
+    const detail::ShownUnit shown = detail::shown_unit(p.unit);
     std::string interval = "no interval";
-    if (std::isfinite(p.lower_95)) interval = fmt::format("95 %: {:.4g} to {:.4g}", p.lower_95, p.upper_95);
-    else if (!p.value || p.undetermined != Undetermined::no) interval = "not determined by these rows";
+    if (std::isfinite(p.lower_95)) {
+      interval = fmt::format("95 %: {:.4g} to {:.4g}", shown.factor * p.lower_95, shown.factor * p.upper_95);
+    } else if (!p.value || p.undetermined != Undetermined::no) interval = "not determined by these rows";
     else if (p.at_bound) interval = "at a bound, no interval";
-    out += fmt::format("      {} = {:.4g}{}  ({})\n", p.key, p.value.value_or(p.kept), unit, interval);
+    out += fmt::format("      {} = {:.4g}{}  ({})\n", p.key, shown.factor * p.value.value_or(p.kept), shown.suffix(),
+                       interval);
   }
   if (stage.misfit) {
     out += block("", 6, "does not describe the rows: " + describe(*stage.misfit));
@@ -128,9 +131,9 @@ std::string rows_table(const ValidationSet& set, const ValidationResult& result,
 }  // namespace
 
 std::string text_validation_list(std::span<const ValidationSet> sets) {
-  std::string text = fmt::format("{:<26}{:>5}  {:<15}{}\n", "Measured set", "rows", "computed by", "vehicle");
+  std::string text = fmt::format("{:<26}{:>5}  {:<19}{}\n", "Measured set", "rows", "computed by", "vehicle");
   for (const ValidationSet& set : sets) {
-    text += block(fmt::format("{:<26}{:>5}  {:<15}", set.name, set.rows, name_of(set.model)), 48, set.vehicle);
+    text += block(fmt::format("{:<26}{:>5}  {:<19}", set.name, set.rows, name_of(set.model)), 52, set.vehicle);
   }
   text += "\nNot predicted:\n";
   for (const ValidationSet& set : sets) {
@@ -345,7 +348,7 @@ const Description<Validated>& set_description() {
                   [](const R& r) { return r.set.operating_point; })
           .always("vehicle_file", "", "empty: none", [](const R& r) { return r.set.vehicle_file; })
           .always("settings", "", "keys of the vehicle file that were set", [](const R& r) { return r.set.settings; })
-          .always("assumes", "", "what the prediction rests on", [](const R& r) { return r.set.assumes; })
+          .always("assumes", "", "assumptions of the prediction", [](const R& r) { return r.set.assumes; })
           .always("not_predicted", "", "what else was measured, and why it is not predicted",
                   [](const R& r) { return r.set.not_predicted; })
           .parts("quantities", "that are compared", quantity_description(),

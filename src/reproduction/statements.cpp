@@ -169,9 +169,9 @@ std::string summary_html(const Material& m) {
   html += fmt::format(
       "<p>One tolerance, {:g} % of the published number, holds for every statement; it is this project's, not the "
       "paper's. Changes are assessed as the paper prints them, in per cent: with springs 33.3 % more lift, not 1.333 "
-      "times as much, of which 1 is no finding. The count by ratios stands beside. Within the printed digits means "
-      "within half a unit of the last one, or a whole unit where the paper says about. Not counted: {} values used "
-      "in the calibration of {} and {}, {} that follow from the paper's tables, {} facts "
+      "times as much, as a factor of 1 means no change. The count by ratios is also given. Within the printed digits "
+      "means within half a unit of the last one, or a whole unit where the paper says about. Not counted: {} values "
+      "used in the calibration of {} and {}, {} that follow from the paper's tables, {} facts "
       "stated twice or read in another way, {} statements that cannot be checked. All of them are in <a "
       "href=\"#claims\">the table</a>.</p>\n",
       100.0 * m.file.tolerance, number([](const Claim& c) { return c.basis == Basis::calibrated; }), s2, s3,

@@ -112,7 +112,7 @@ void SweepJournal::lock(std::uint64_t fingerprint, std::uint64_t size, const Pre
   const bool data_there = std::filesystem::exists(data_set_);
   const bool journal_there = std::filesystem::exists(journal_);
   if (data_there && !journal_there && !force_) {
-    refuse(data_set_, fmt::format("is there without {}, so it is not of a sweep under way; it is left as it is: give "
+    refuse(data_set_, fmt::format("exists without {} and belongs to no sweep in progress; it is unchanged: give "
                                   "another name, or --force to replace it",
                                   journal_.filename().string()));
   }
@@ -139,11 +139,11 @@ void SweepJournal::lock(std::uint64_t fingerprint, std::uint64_t size, const Pre
   const bool same_kind = std::memcmp(&there, &header, std::min(std::size_t(got), sizeof header.magic)) == 0;
   const bool same_sweep = std::memcmp(&there, &header, std::size_t(got)) == 0;
   if (!same_kind && !force_) {
-    refuse(journal_, "is no journal of a sweep; it is left as it is: give another name, or --force to replace it");
+    refuse(journal_, "is no journal of a sweep; it is unchanged: give another name, or --force to replace it");
   }
   if (!same_sweep && !force_) {
     refuse(journal_, fmt::format("belongs to another sweep (another study, vehicle, option or version of the program); "
-                                 "it is left as it is: give another name, or --force to remove it and {} and to begin "
+                                 "it is unchanged: give another name, or --force to remove it and {} and to begin "
                                  "anew",
                                  data_set_.filename().string()));
   }

@@ -85,7 +85,7 @@ void check_fit(const BenchFit& fit) {
           fit.starts);
   if (fit.loss != Loss::none) {
     require(fit.loss_scale >= min_loss_scale && fit.loss_scale <= max_loss_scale, "fit.loss_scale",
-            "must lie between 1 and 4: elsewhere intervals do not hold what they say", "1", fit.loss_scale);
+            "must lie between 1 and 4: elsewhere the coverage of intervals is not as stated", "1", fit.loss_scale);
   }
   for (const FreeParameter& p : fit.parameters) {
     if (!keys.insert(p.parameter.key).second) throw ParameterError(p.parameter.key, "is given twice");
@@ -97,7 +97,7 @@ void check_fit(const BenchFit& fit) {
     if (p.of_bench) continue;
     for (const double x : {p.lower, p.upper, p.start}) {
       Design<double> design = fit.design;
-      if (!p.parameter.set(design, x)) throw ParameterError(p.parameter.key, "has no place in this vehicle");
+      if (!p.parameter.set(design, x)) throw ParameterError(p.parameter.key, "does not apply to this vehicle");
       validate(design);
     }
     if (p.parameter.key == "vehicle.motors" || p.parameter.key == "wing.count")

@@ -20,7 +20,7 @@ struct FlightMoment {
   double duty = 1.0;        ///< of a battery without a bridge
 };
 
-/// What the battery gives, on the average.
+/// What the battery gives, on average.
 struct BatteryLoad {
   double voltage, current;  ///< at its terminals [V], [A]; absent where it cannot give the power
   double internal_power;    ///< [W]

@@ -11,7 +11,7 @@
 namespace wingbeat::detail {
 namespace {
 
-/// A crank that turns evenly, with its wings: what the motor then has to give on the average, and the lift.
+/// A crank that turns evenly, with its wings: what the motor then has to give on average, and the lift.
 class EvenTurn {
  public:
   explicit EvenTurn(const Vehicle<double>& v) : vehicle_(v) {

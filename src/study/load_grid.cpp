@@ -39,7 +39,7 @@ void require_plain_air(const Vehicle<double>& v) {
                        {claps(w.clap), clap_and_fling_key::amplitude.path},
                        {twists(v.pitch.torsion), torsion_key::stiffness.path}};
   for (const auto& [given, key] : without_table) {
-    if (given) throw ParameterError(key, "has no place in a table of loads; leave it out to write one");
+    if (given) throw ParameterError(key, "does not apply to a table of loads; leave it out to write one");
   }
 }
 

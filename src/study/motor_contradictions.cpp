@@ -17,14 +17,15 @@ bool is_gross(double ratio, double deviation) {
 
 }  // namespace
 
-void find_contradictions(const std::string& constant_name, const std::vector<Estimate>& estimates,
-                         std::vector<Contradiction>& out) {
+void find_contradictions(const std::string& constant_name, const std::string& unit,
+                         const std::vector<Estimate>& estimates, std::vector<Contradiction>& out) {
   for (std::size_t a = 0; a < estimates.size(); ++a) {
     for (std::size_t b = a + 1; b < estimates.size(); ++b) {
       const double ratio = estimates[b].value / estimates[a].value, size = std::abs(ratio - 1.0);
       if (size > 5e-4) {
-        out.push_back({constant_name, estimates[a].source, estimates[b].source, estimates[a].value, estimates[b].value,
-                       size, is_gross(ratio, std::hypot(estimates[a].deviation, estimates[b].deviation))});
+        out.push_back({constant_name, unit, estimates[a].source, estimates[b].source, estimates[a].value,
+                       estimates[b].value, size,
+                       is_gross(ratio, std::hypot(estimates[a].deviation, estimates[b].deviation))});
       }
     }
   }
@@ -56,11 +57,11 @@ void compare_ways(const MotorDatasheet& s, double friction_torque, double torque
     add(resistances, "stall torque", constants[0].value * v * torque_factor / *s.stall_torque, {"stall_torque"});
     resistances.back().deviation = std::hypot(resistances.back().deviation, constants[0].deviation);
   }
-  find_contradictions("armature resistance", resistances, out);
-  find_contradictions("torque constant", constants, out);
+  find_contradictions("armature resistance", "ohm", resistances, out);
+  find_contradictions("torque constant", "N m/A", constants, out);
   if (s.no_load_current && s.friction_torque && !constants.empty()) {
     find_contradictions(
-        "friction torque",
+        "friction torque", "N m",
         {{"friction torque", *s.friction_torque, deviation_in(s, "friction_torque")},
          {"no-load current", constants[0].value * *s.no_load_current, deviation_in(s, "no_load_current")}},
         out);
@@ -78,8 +79,9 @@ void refuse_contradictions(const std::vector<Datum>& data, MotorIdentification& 
     if (!c.gross) continue;
     const double factor = std::max(c.first_value / c.second_value, c.second_value / c.first_value);
     const std::string reason =
-        format("%s and %s contradict each other about the %s by a factor of %.3g (%.4g and %.4g)", c.first.c_str(),
-               c.second.c_str(), c.constant.c_str(), factor, c.first_value, c.second_value);
+        format("%s and %s contradict each other about the %s by a factor of %.3g (%s and %s)", c.first.c_str(),
+               c.second.c_str(), c.constant.c_str(), factor, datasheet_text(c.first_value, c.unit).c_str(),
+               datasheet_text(c.second_value, c.unit).c_str());
     std::string& which = c.constant == "rotor inertia" ? inertia : electrical;
     if (which.empty()) which = reason;
   }
@@ -88,8 +90,9 @@ void refuse_contradictions(const std::vector<Datum>& data, MotorIdentification& 
                                     [&](const DatasheetCheck& c) { return c.name == d.name; });
     if (!electrical.empty() || check == result.checks.end()) continue;
     if (!is_gross(check->identified / check->published, d.deviation)) continue;
-    electrical = format("%s (%.4g) and the rest of the sheet (%.4g) contradict each other",
-                        detail::spaced(d.name).c_str(), check->published, check->identified);
+    electrical = format("%s (%s) and the rest of the sheet (%s) contradict each other", detail::spaced(d.name).c_str(),
+                        datasheet_text(check->published, check->unit).c_str(),
+                        datasheet_text(check->identified, check->unit).c_str());
   }
   if (!electrical.empty()) {
     for (IdentifiedConstant* c :

@@ -16,8 +16,8 @@ struct Estimate {
 };
 
 /// Adds the pairs of ways to one constant that do not agree.
-void find_contradictions(const std::string& constant_name, const std::vector<Estimate>& estimates,
-                         std::vector<Contradiction>& out);
+void find_contradictions(const std::string& constant_name, const std::string& unit,
+                         const std::vector<Estimate>& estimates, std::vector<Contradiction>& out);
 
 /// Compares the independent ways to resistance, torque constant and constant friction [N m], of which the fit gave the
 /// last; torques are `torque_factor` times what the motor gives.

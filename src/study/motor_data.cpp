@@ -1,6 +1,10 @@
 #include "study/motor_data.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <tuple>
 
 #include "wingbeat/core/status.hpp"
 #include "wingbeat/core/text.hpp"
@@ -14,6 +18,25 @@ void check_range(const char* key, const char* unit, const std::optional<double>&
 }
 
 }  // namespace
+
+const char* unit_of(DatumKind kind) {
+  switch (kind) {
+    case DatumKind::resistance: return "ohm";
+    case DatumKind::torque_constant: return "N m/A";
+    case DatumKind::speed_constant: return "rad/s/V";
+    case DatumKind::no_load_speed:
+    case DatumKind::point_speed: return "rad/s";
+    case DatumKind::no_load_current:
+    case DatumKind::stall_current:
+    case DatumKind::point_current: return "A";
+    case DatumKind::stall_torque:
+    case DatumKind::friction_torque:
+    case DatumKind::point_torque: return "N m";
+    case DatumKind::viscous_damping: return "N m s/rad";
+    case DatumKind::point_efficiency: return "1";
+  }
+  return "1";
+}
 
 void validate(const MotorDatasheet& s) {
   check_range("voltage", "V", s.voltage);
@@ -108,3 +131,24 @@ std::vector<Datum> data_of(const MotorDatasheet& s) {
 }
 
 }  // namespace wingbeat::detail
+
+namespace wingbeat {
+
+double without_rounding_errors(double x) {
+  const double rounded = std::stod(detail::format("%.12g", x));
+  return std::abs(rounded - x) <= 3e-13 * std::abs(x) ? rounded : x;
+}
+
+std::string datasheet_text(double x, std::string_view unit) {
+  constexpr double rpm = 30.0 / std::numbers::pi;
+  const std::tuple<std::string_view, double, const char*> shown[] = {
+      {"rad/s", rpm, " rpm"},    {"rad/s/V", rpm, " rpm/V"}, {"N m", 1e3, " mN m"},
+      {"N m/A", 1e3, " mN m/A"}, {"kg m2", 1e7, " g cm2"},   {"1", 1.0, ""}};
+  for (const auto& [si, factor, name] : shown) {
+    // Speeds are stated to whole revolutions.
+    if (unit == si) return detail::format(factor == rpm ? "%.5g%s" : "%.4g%s", factor * x, name);
+  }
+  return detail::format("%.4g ", x) + std::string(unit);
+}
+
+}  // namespace wingbeat

@@ -28,6 +28,9 @@ enum class DatumKind {
   point_efficiency
 };
 
+/// SI
+const char* unit_of(DatumKind kind);
+
 struct Datum {
   std::string name;
   DatumKind kind;

@@ -289,7 +289,8 @@ void validate(const HeatingCurve& c) {
       refuse(current ? "voltage" : "current", "missing: of a motor that runs without load both are needed");
     }
   } else if (c.held_current && c.held_voltage) {
-    refuse("voltage", "has no place beside the current: one of them is held, the other follows from the temperature");
+    refuse("voltage",
+           "cannot be combined with the current: one of them is held, the other follows from the temperature");
   }
   const bool temperature = !c.winding_temperature.empty() || !c.case_temperature.empty() || !c.resistance.empty();
   if (!temperature && (c.motor == HeatedMotor::idling || !current || !voltage)) {

@@ -28,7 +28,7 @@ void take_electrical_constants(const MotorDatasheet& s, const MotorFit& fit, Mot
     result.torque_constant = {to_output * K, to_output * K * fit.error(detail::constant), "fitted"};
     for (const Datum& d : fit.data) {
       const double p = detail::predicted(d, fit.x, fit.scales);
-      result.checks.push_back({d.name, d.value, p, p / d.value - 1.0});
+      result.checks.push_back({d.name, detail::unit_of(d.kind), d.value, p, p / d.value - 1.0});
     }
   } else {
     if (fit.has_resistance) result.armature_resistance = {s.resistance, s.deviation * *s.resistance, "the sheet's"};
@@ -127,7 +127,7 @@ void take_inertia(const MotorDatasheet& s, const MotorFit& fit, MotorIdentificat
   if (!inertias.empty() && s.assume_steel_cylinder) {
     result.remarks.push_back("the fallback for the inertia is not used: the sheet determines it");
   }
-  detail::find_contradictions("rotor inertia", inertias, result.contradictions);
+  detail::find_contradictions("rotor inertia", "kg m2", inertias, result.contradictions);
 }
 
 void take_inductance(const MotorDatasheet& s, const MotorFit& fit, std::optional<double> frequency,
@@ -170,9 +170,9 @@ void remark_on_misfits(const std::vector<Datum>& data, MotorIdentification& resu
                                     [&](const DatasheetCheck& c) { return c.name == d.name; });
     if (check != result.checks.end() && std::abs(check->deviation) > 3.0 * d.deviation) {
       result.remarks.push_back(
-          format("%s does not fit the rest of the sheet: %.4g published, %.4g from the identified "
-                 "motor",
-                 detail::spaced(d.name).c_str(), d.value, check->identified));
+          format("%s does not fit the rest of the sheet: %s published, %s from the identified motor",
+                 detail::spaced(d.name).c_str(), datasheet_text(d.value, check->unit).c_str(),
+                 datasheet_text(check->identified, check->unit).c_str()));
     }
   }
   if (result.birge_ratio > 1.05) {
@@ -249,6 +249,10 @@ MotorIdentification identify_motor(const MotorDatasheet& s, std::optional<double
                    [](const auto& a, const auto& b) { return a.size > b.size; });
   remark_on_misfits(data, result);
   detail::refuse_contradictions(data, result);
+  for (IdentifiedConstant* c : {&result.armature_resistance, &result.armature_inductance, &result.torque_constant,
+                                &result.inertia, &result.viscous_damping, &result.friction_torque}) {
+    if (c->value) c->value = without_rounding_errors(*c->value);
+  }
   return result;
 }
 

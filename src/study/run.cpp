@@ -31,10 +31,9 @@ void require_choice_of_voltage(const Supply<double>& supply, const char* wanted,
 void set_duty(Supply<double>& supply, double mean, double lift) {
   const double duty = mean / supply.voltage;
   if (!(duty <= 1.0)) {
-    throw ParameterError("supply.voltage",
-                         format("%.5g N of lift takes %.4g V on the average, more than the %.4g V that "
-                                "the supply gives at a duty of 1",
-                                lift, mean, supply.voltage));
+    throw ParameterError("supply.voltage", format("%.5g N of lift takes %.4g V on average, more than the %.4g V that "
+                                                  "the supply gives at a duty of 1",
+                                                  lift, mean, supply.voltage));
   }
   supply.duty = duty;
 }

@@ -340,6 +340,32 @@ std::vector<ValidationStage> stages_of(const ValidationSet& set, const MapsProbl
       set, {}, [&](const std::vector<FreeParameter>&, const Numbers&) { return map_numbers(set, problem); });
 }
 
+// ---- a vehicle with a body in hover
+
+std::vector<ValidationStage> stages_of(const ValidationSet& set, const FlightProblem& problem) {
+  const FlightNumbers numbers = flight_numbers(problem.vehicle, problem.numbers);
+  Numbers averaged = numbers.averaged, floquet = numbers.floquet;
+  for (const FlightProblem::Map& map : problem.maps) {
+    const Numbers loads = load_over_control(problem.vehicle, map.control, map.settings, map.load);
+    averaged.insert(averaged.end(), loads.begin(), loads.end());
+  }
+  floquet.resize(averaged.size(), absent);
+  const bool modes = std::any_of(problem.numbers.begin(), problem.numbers.end(), is_of_modes);
+  std::vector<ValidationStage> stages;
+  for (Numbers* numbers_of_stage : {&averaged, &floquet}) {
+    if (!modes && numbers_of_stage == &floquet) continue;
+    ValidationStage stage;
+    stage.name = "nothing fitted";
+    if (modes) stage.variant = numbers_of_stage == &averaged ? "averaged over the wingbeat" : "Floquet, whole flight";
+    stage.predicted = std::move(*numbers_of_stage);
+    for (std::size_t n = 0; n < set.points.size(); ++n) {
+      stage.predicted[n] /= problem.per_value[set.points[n].quantity];
+    }
+    stages.push_back(std::move(stage));
+  }
+  return stages;
+}
+
 // ---- the resistance of a battery
 
 std::vector<ValidationStage> stages_of(const ValidationSet& set, const ResistanceProblem&) {

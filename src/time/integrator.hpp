@@ -20,7 +20,9 @@ struct IntegratorProblem {
   std::function<void(double t, const double* y, double* values)> root_functions;
   std::function<void(const double* y, double* errors)> tolerated;  ///< admissible local error of each unknown, > 0
   double longest_step = std::numeric_limits<double>::infinity();   ///< of own steps, so that no root hides within one
-  std::vector<double> typical;  ///< size of the coupled unknowns, for the difference quotients of the Jacobian
+  std::vector<double> typical;   ///< size of the coupled unknowns, for the difference quotients of the Jacobian
+  double root_resolution = 0.0;  ///< of own steps: part of a step to which roots are located [1]; 0: to rounding
+  double* next_step = nullptr;   ///< of own steps: kept from piece to piece, where it stands > 0 the first one [s]
 };
 
 class Integrator {

@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "time/integrator.hpp"
@@ -81,6 +82,7 @@ class OwnIntegrator : public Integrator {
     directions_.assign(directions, directions + problem_.roots);
     std::copy_n(state_.begin(), N, y_.begin());
     std::fill(signs_.begin(), signs_.end(), 0.0);
+    if (problem_.next_step && step_ == 0.0) step_ = *problem_.next_step;
     look_here();
     return first_rates();
   }
@@ -105,11 +107,13 @@ class OwnIntegrator : public Integrator {
       }
       const double wanted = h * std::clamp(0.9 * std::pow(std::max(error, 1e-12), -1.0 / exponent()), 0.3, 6.0);
       step_ = last ? std::max(step_, wanted) : wanted;
+      if (problem_.next_step) *problem_.next_step = step_;
       y_ = step.y;
       if (!finish(h, last ? stop_ : from_ + h)) return Outcome::failed;
       double where = 0.0;
       if (crosses(h, where)) {
-        step = measuring_ ? take<true>(where) : take<false>(where);
+        if (where == kept_at_) step = kept_;
+        else step = measuring_ ? take<true>(where) : take<false>(where);
         if (!step.admissible) return Outcome::failed;
         y_ = step.y;
         if (!finish(where, from_ + where)) return Outcome::failed;
@@ -214,6 +218,7 @@ class OwnIntegrator : public Integrator {
 
   /// True if a root lies within the step of length h; `where` is the time from its start to just after the first.
   bool crosses(double h, double& where) {
+    kept_at_ = -1.0;
     for (int look = 1; look <= looks; ++look) {
       const double share = double(look) / (looks + 1);
       problem_.root_functions(from_ + share * h, between(share).data(), looked_[at(look - 1)].data());
@@ -235,9 +240,44 @@ class OwnIntegrator : public Integrator {
     where = first;
     return std::isfinite(first);
   }
+  /// As root_between(), to a part of the step: where the cubic has the root, then by the slope there. None where that
+  /// does not settle soon.
+  std::optional<double> root_near_cubic(std::size_t k, double sign, double a, double b, double h, double resolved) {
+    constexpr int max_trials = 6;
+    const auto by_cubic = [&](double s) {
+      problem_.root_functions(from_ + s, between(s / h).data(), looked_again_.data());
+      return sign * looked_again_[k];
+    };
+    const double fa = by_cubic(a), fb = by_cubic(b);
+    if (!(fa >= 0.0 && fb < 0.0)) return std::nullopt;
+    const Bracket<double> near = find_zero(by_cubic, a, fa, b, fb, 1e-3 * (b - a));
+    double s = near.after;
+    const double aside = std::min(0.01 * (b - a), std::min(s, h - s));
+    const double slope = aside > 0.0 ? (by_cubic(s + aside) - by_cubic(s - aside)) / (2.0 * aside) : 0.0;
+    if (!(slope < 0.0)) return std::nullopt;
+    double before = -std::numeric_limits<double>::infinity(), after = std::numeric_limits<double>::infinity();
+    for (int trial = 0; trial < max_trials; ++trial) {
+      if (!(s > 0.0 && s < h)) return std::nullopt;
+      solver::StepResult<System> step = measuring_ ? take<true>(s) : take<false>(s);
+      if (!step.admissible) return std::nullopt;
+      problem_.root_functions(from_ + s, step.y.data(), looked_again_.data());
+      const double f = sign * looked_again_[k];
+      if (f < 0.0) after = s, kept_ = step, kept_at_ = s;
+      else before = s;
+      if (after - before <= resolved) return after;
+      // A little beyond, so that the other side is found.
+      s += -f / slope + (f < 0.0 ? -0.4 : 0.4) * resolved;
+      if (s <= before || s >= after) s = 0.5 * (before + after);
+    }
+    return std::nullopt;
+  }
   /// Just after the sign change of root function k between a and b, times from the step's start; infinite where the
   /// cubic alone has one.
   double root_between(std::size_t k, double sign, double a, double b, double h) {
+    const double resolved = std::max(4e-16 * (std::abs(from_) + h), problem_.root_resolution * h);
+    if (problem_.root_resolution > 0.0) {
+      if (const std::optional<double> root = root_near_cubic(k, sign, a, b, h, resolved)) return *root;
+    }
     const auto value = [&](double s) {
       if (s <= 0.0) return values_[k];
       if (s >= h) return later_[k];
@@ -255,7 +295,6 @@ class OwnIntegrator : public Integrator {
       if (!(sign * fb < 0.0)) return std::numeric_limits<double>::infinity();
     }
     if (sign * fa < 0.0) a = 0.0, fa = sign * std::numeric_limits<double>::min();
-    const double resolved = 4e-16 * (std::abs(from_) + h);
     return find_zero([&](double s) { return sign * value(s); }, a, sign * fa, b, sign * fb, resolved).after;
   }
   void note_roots() {
@@ -283,6 +322,8 @@ class OwnIntegrator : public Integrator {
   std::vector<int> directions_;
   double t_ = 0.0, from_ = 0.0, stop_ = 0.0, horizon_ = 0.0, step_ = 0.0, length_ = 0.0;
   State y_{}, start_{}, dense_{};
+  solver::StepResult<System> kept_{};  ///< of the step to a time from its start, where a root was located
+  double kept_at_ = -1.0;
   solver::Rates<System> rates_{}, start_rates_{};
 };
 

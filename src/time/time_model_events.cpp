@@ -16,11 +16,24 @@ StandingTorques<double> TimeModel::standing_torques(double angle) const {
 }
 
 StandingTorques<double> TimeModel::standing_torques(const double* y) const {
-  if (!wings_pitch) return standing_torques(y[0]);
+  if (!wings_pitch && !has_flow(vehicle.wings)) return standing_torques(y[0]);
   const FullState<double> here = instant(now.t, y);
-  const double moment = here.configuration.spring_moment + wings_standing(vehicle, here, mode()).moment;
-  return wingbeat::standing_torques(vehicle, here.configuration.kinematics,
-                                    static_rod_force(here.configuration.kinematics, moment));
+  const CrankKinematics<double>& k = here.configuration.kinematics;
+  const auto under = [&](double moment_of_air) {
+    return wingbeat::standing_torques(vehicle, k,
+                                      static_rod_force(k, here.configuration.spring_moment + moment_of_air));
+  };
+  if (wings_pitch) return under(wings_standing(vehicle, here, mode()).moment);
+  // On a body that moves the air turns wings that stand. Under the pitch law they lie over as they set off, so that it
+  // turns them otherwise to either side.
+  const auto towards = [&](double way) {
+    Mode<double> leaving = mode();
+    leaving.stroke = way * sign_of(k.stroke_slope);
+    return under(aero_loads(vehicle.wings, 0.0, leaving.stroke, now.pitching,
+                            clap_factor(vehicle, here.configuration, leaving), here.configuration.stroke_angle)
+                     .moment);
+  };
+  return {towards(-1.0).low, towards(1.0).high};
 }
 
 double TimeModel::net_static_torque(double angle, double i) const {
@@ -56,7 +69,8 @@ std::array<double, TimeModel::indicator_count> TimeModel::indicators(double t, c
   values.fill(1.0);
   if (now.stuck) {
     const StandingTorques<double> torques = standing_torques(y);
-    values[standstill] = torques.margin(standing_torque(t, y)) / (wings_pitch ? torque_scale : torques.friction());
+    values[standstill] = torques.margin(standing_torque(t, y)) /
+                         (wings_pitch || has_flow(vehicle.wings) ? torque_scale : torques.friction());
   } else if (jumps_) {
     values[standstill] = y[1] / speed_scale;
   }

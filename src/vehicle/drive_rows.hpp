@@ -38,12 +38,12 @@ constexpr auto drive_rows() {
                  "M, number of motors on the supply, each with its own transmission and wings, in phase"},
                 [](auto& d) -> auto& { return d.motors; }),
 
-      choice<S, SupplyChoice>("what feeds the motor terminals"),
+      choice<S, SupplyChoice>("source at the motor terminals"),
       number<S, Powered>(row(supply_key::voltage, "required", "v, terminal voltage; pwm: while switched on", {}, "3 V"),
                          [](auto& d) -> auto& { return d.supply.voltage; }),
       number<S, Sine>(row(supply_key::amplitude, "required", "amplitude of the sine", {}, "3 V"),
                       [](auto& d) -> auto& { return d.supply.voltage; }),
-      number<S, Sine>(row(supply_key::offset, "0 V", "V_0, constant part of the voltage beside the sine"),
+      number<S, Sine>(row(supply_key::offset, "0 V", "V_0, constant part of the voltage, added to the sine"),
                       [](auto& d) -> auto& { return d.supply.offset; }),
       replaceable<S, Periodic>(
           row(supply_key::frequency, "required", "drive frequency (sine) or switching frequency (pwm)",
@@ -60,17 +60,16 @@ constexpr auto drive_rows() {
       number<S, Switched>(row(supply_key::duty, "1",
                               "D, fraction of a period switched on; required for pwm, else of the speed control"),
                           [](auto& d) -> auto& { return d.supply.duty; }),
-      text<S, OnBattery>(
-          {"supply.throttle",
-           "",
-           {wingbeat::listed_names<Throttle>()},
-           "fixed",
-           "what the speed control does in flight: fixed holds the duty (or a bridge's amplitude), hover "
-           "sets it so that the mean lift carries the weight"},
-          [](const D& d) {
-            if (!OnBattery::holds(d)) return std::string();
-            return std::string(name_of(d.supply.throttle));
-          }),
+      text<S, OnBattery>({"supply.throttle",
+                          "",
+                          {wingbeat::listed_names<Throttle>()},
+                          "fixed",
+                          "speed control in flight: fixed holds the duty (or a bridge's amplitude), hover "
+                          "sets it so that the mean lift carries the weight"},
+                         [](const D& d) {
+                           if (!OnBattery::holds(d)) return std::string();
+                           return std::string(name_of(d.supply.throttle));
+                         }),
       number<S, OnBattery>(row(battery_key::cells, "1", "cells in series"),
                            [](auto& d) -> auto& { return d.supply.battery.cells; }),
       battery_voltage<S>(row(battery_key::cell_voltage, "required", "E, open-circuit voltage of one cell at any charge",
@@ -190,10 +189,11 @@ constexpr auto drive_rows() {
                             "tau_c, of the case over the air, for `wingbeat endurance`"),
                         [](auto& d) -> auto& { return d.motor.thermal.time_constant_case; }),
 
-      number<S, Motorised>(row(electronics_key::efficiency, "none: no electronics",
-                               "eta_esc of a brushless motor's electronics, what the motor takes over what the supply "
-                               "gives; given, no current flows back into the supply"),
-                           [](auto& d) -> auto& { return d.electronics.efficiency; }),
+      number<S, Motorised>(
+          row(electronics_key::efficiency, "none: no electronics",
+              "eta_esc of a brushless motor's electronics: power into the motor over power from the supply; "
+              "given, no current flows back into the supply"),
+          [](auto& d) -> auto& { return d.electronics.efficiency; }),
       number<S, Brushless>(
           row(electronics_key::current_max, "none", "i_max to which they limit the current of one motor"),
           [](auto& d) -> auto& { return d.electronics.current_max; }),
@@ -228,7 +228,7 @@ constexpr auto drive_rows() {
       number<S, PiezoDriven>(row(piezo_key::loss_tangent, "0", "tan d of its dielectric"),
                              [](auto& d) -> auto& { return d.piezo.constants.loss_tangent; }),
       number<S, PiezoDriven>(row(piezo_key::recovered_share, "1",
-                                 "share of the energy that the capacitance gives back in a cycle which the electronics "
+                                 "share of the energy returned by the capacitance in a cycle that the electronics "
                                  "recover"),
                              [](auto& d) -> auto& { return d.piezo.constants.recovered_share; }),
       number<S, PiezoDriven>(row(piezo_key::transmission_ratio, "required",

@@ -211,7 +211,7 @@ constexpr auto wing_rows() {
       number<S>(
           row(torsion_key::stiffness, "none: no twist",
               "k_tau, torsion of one wing along its span: twist of the tip against the root, linear between; given, "
-              "it is a degree of freedom, beside the pitch hinge or in its place"),
+              "twist is a degree of freedom, in addition to the pitch hinge or instead of it"),
           [](auto& d) -> auto& { return d.wing.torsion.stiffness; }),
       number<S, Twisting>(row(torsion_key::damping, "0 N m s/rad", "c_tau of one wing"),
                           [](auto& d) -> auto& { return d.wing.torsion.damping; }),
@@ -315,13 +315,14 @@ constexpr auto wing_rows() {
       number<S, UnderPitchLaw>(
           row(aerodynamics_key::angle_of_attack_min, "none", "stop of the passive pitching: alpha falls no lower"),
           [](auto& d) -> auto& { return d.aerodynamics.angle_of_attack_min; }),
-      text<S>({"aerodynamics.added_mass",
-               "",
-               {"true or false"},
-               "false",
-               "air accelerated with the wings: J_a = pi/4 rho S_22 by strip theory, of wings on a pitch hinge the air "
-               "that their pitching moves, too; takes no mean power"},
-              [](const D& d) { return std::string(d.aerodynamics.added_mass ? "true" : ""); }),
+      text<S>(
+          {"aerodynamics.added_mass",
+           "",
+           {"true or false"},
+           "false",
+           "air accelerated with the wings: J_a = pi/4 rho S_22 by strip theory; for wings on a pitch hinge also the "
+           "air moved by pitching; without mean power"},
+          [](const D& d) { return std::string(d.aerodynamics.added_mass ? "true" : ""); }),
       number<S>(row(wing_limits_key::kinematic_viscosity, "1.5e-5 m2/s",
                     "nu, kinematic viscosity of the air, for the Reynolds number; no force depends on it"),
                 [](auto& d) -> auto& { return d.aerodynamics.kinematic_viscosity; }),
@@ -333,7 +334,7 @@ constexpr auto wing_rows() {
                 [](auto& d) -> auto& { return d.aerodynamics.reynolds_number_max; }),
       number<S>(
           row(tip_loss_key::lifting_span, "1",
-              "B, part of the distance from hinge to tip that lifts; beyond it the wings have the drag C_D(0) alone"),
+              "B, part of the distance from hinge to tip that lifts; beyond it the wings have only the drag C_D(0)"),
           [](auto& d) -> auto& { return d.aerodynamics.lifting_span; }),
       number<S>(row(induced_velocity_key::share, "none",
                     "applied share, 0 to 1, of the induced velocity of momentum theory. Coefficients measured on "
@@ -395,10 +396,11 @@ constexpr auto wing_rows() {
       wave_number<S>(
           {"aerodynamics.coefficients.drag.phase", "rad", range::any, "required", "D of C_D = A + B cos(C alpha + D)"},
           [](auto& c) -> auto& { return c.drag.phase; }),
-      wave_number<S>({"aerodynamics.coefficients.tangential", "1", range::not_negative, "0",
-                      "C_T,0 of a force along the chord beside C_L and C_D: C_T = C_T,0 cos(2 alpha)^2 below 45 deg, "
-                      "else 0"},
-                     [](auto& c) -> auto& { return c.tangential; }),
+      wave_number<S>(
+          {"aerodynamics.coefficients.tangential", "1", range::not_negative, "0",
+           "C_T,0 of a force along the chord, in addition to C_L and C_D: C_T = C_T,0 cos(2 alpha)^2 below 45 deg, "
+           "else 0"},
+          [](auto& c) -> auto& { return c.tangential; }),
       table<S>({"aerodynamics.coefficients.table",
                 "",
                 {"name of a CSV file, or three or more rows, angles growing"},

@@ -318,7 +318,7 @@ TEST_F(Endurance, AnOptimumCountsWhileTheVehicleHovers) {
 
   const Outcome useless = run({"optimise", study("count_after_hover = true\n", "lift_mean_n", "")});
   EXPECT_EQ(useless.status, 2);
-  EXPECT_THAT(useless.err, HasSubstr("study.count_after_hover: has no place here: neither the objective nor a "
+  EXPECT_THAT(useless.err, HasSubstr("study.count_after_hover: does not apply here: neither the objective nor a "
                                      "constraint is endurance_s"));
   std::string weightless = read(battery);
   weightless.erase(weightless.find("mass = "),

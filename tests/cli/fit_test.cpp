@@ -40,7 +40,7 @@ TEST_F(Fit, SignalsInTimeGiveVehicleAndBalance) {
   const Outcome o =
       run({"fit", waveforms, "--no-profiles", "-o", path("fitted.toml"), "--plot-cycles", path("cycles.svg")});
   EXPECT_EQ(o.status, 0) << o.err;
-  for (const char* part : {"balance.stiffness", "Fitted beside them", "phase of waveforms.csv, burst 2",
+  for (const char* part : {"balance.stiffness", "Also fitted", "phase of waveforms.csv, burst 2",
                            "zero of stroke_angle in waveforms.csv"}) {
     EXPECT_THAT(o.out, HasSubstr(part)) << o.out;
   }
@@ -214,7 +214,7 @@ TEST_F(WrongUnit, IsAMisfitOfDeviationsThatAreEstimatedToo) {
   const Outcome o = fit("[deviation]\ndefault = \"estimated\"\n");
   EXPECT_EQ(o.status, 3);
   EXPECT_TRUE(o.out.starts_with("MISFIT: ")) << o.out;
-  EXPECT_THAT(o.err, HasSubstr("the residuals of current_mean_a are on the average"));
+  EXPECT_THAT(o.err, HasSubstr("the residuals of current_mean_a are on average"));
   EXPECT_THAT(o.out, testing::Not(HasSubstr(" .. ")));
 }
 

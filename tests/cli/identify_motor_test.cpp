@@ -61,7 +61,7 @@ TEST_F(IdentifyMotor, HandsOnWhatTheSheetSaysOfHeat) {
   EXPECT_EQ(run({"identify-motor", path("sheet.toml"), "-o", path("motor.toml")}).status, 0);
   EXPECT_THAT(read(path("motor.toml")),
               HasSubstr("thermal_resistance_winding = \"20 K/W\"\nthermal_resistance_case = \"48 K/W\"\n"
-                        "winding_temperature_max = \"358.15 K\"\n"));
+                        "winding_temperature_max = \"85 degC\"\n"));
   std::ofstream(path("half.toml")) << read(faulhaber) << heat;
   EXPECT_THAT(run({"identify-motor", path("half.toml")}).err, HasSubstr("give both thermal resistances"));
 }

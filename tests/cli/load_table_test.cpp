@@ -100,7 +100,7 @@ TEST_F(LoadTable, BadTablesAreRefused) {
               HasSubstr("depends on the pitch, which follows the stroke here"));
   EXPECT_THAT(
       run({"export-kinematics", data + "/loads/flapper.toml", "--format", "load-table", "-o", path("o.csv")}).err,
-      HasSubstr("aerodynamics.type: has no place in a table of loads"));
+      HasSubstr("aerodynamics.type: does not apply to a table of loads"));
 }
 
 }  // namespace

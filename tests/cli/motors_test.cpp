@@ -40,7 +40,7 @@ TEST_F(Motors, ARunTellsWhatTheyGiveTogether) {
     EXPECT_NEAR(number(two, key) / number(one, key), 1.0, 1e-6) << key;
   }
   const std::string text = run({"run", file_with("motors = 2")}).out;
-  EXPECT_THAT(text, HasSubstr("currents, powers and lift are of all of them"));
+  EXPECT_THAT(text, HasSubstr("totals of all motors"));
   EXPECT_THAT(text, HasSubstr("of one rod"));
   EXPECT_THAT(run({"run", plain}).out, Not(HasSubstr("of all of them")));
 }

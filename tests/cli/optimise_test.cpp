@@ -143,7 +143,7 @@ TEST_F(Optimise, ADriveTrainIsChosenFromLists) {
   EXPECT_EQ(one["screening"], json["screening"]);
 
   EXPECT_THAT(complaint(lists + least + "[motors]\ncatalogue = \"" + data + "/motors/motors.csv\"\ngear_ratio = 10\n"),
-              HasSubstr("motors.gear_ratio: has no place beside [gearboxes], which state theirs"));
+              HasSubstr("motors.gear_ratio: cannot be combined with [gearboxes], which state theirs"));
   EXPECT_THAT(complaint("[drive_train]\nrefine = 3\n" + least + voltage),
               HasSubstr("needs a list of gearboxes or of batteries"));
   const std::string without = "[gearboxes]\ncatalogue = \"gearboxes.csv\"\n" + least;
@@ -186,7 +186,7 @@ TEST_F(Optimise, TheMotorsMassCountsWhereTheVehicleGivesOne) {
   EXPECT_NEAR(json["motors"][0]["result"]["value"].get<double>(), own["value"].get<double>(), 1e-6);
   EXPECT_EQ(json["motors"][1]["refused"], "incomplete, no mass");
   EXPECT_EQ(complaint(motors + "mass_without = \"2 g\"\n" + masses + objective + voltage),
-            "wingbeat: study.toml:6:1: motors.mass_without: has no place where the vehicle gives motor.mass: "
+            "wingbeat: study.toml:6:1: motors.mass_without: does not apply where the vehicle gives motor.mass: "
             "vehicle.mass is without the motor already\n");
 }
 
@@ -317,7 +317,7 @@ TEST_F(Optimise, BadFrontsAreRefusedWithTheirPlace) {
   EXPECT_EQ(complaint(two + "[[parameter]]\nkey = \"motor.inertia\"\nvalues = [0, 1]\n"),
             "wingbeat: study.toml:9:11: parameter.values: motor.inertia: must be > 0 [kg m2], got 0\n");
   EXPECT_EQ(complaint(two + voltage.substr(0, voltage.size() - 1) + "\nvalues = [1, 2]\n"),
-            "wingbeat: study.toml:9:1: parameter.lower: has no place beside parameter.values\n");
+            "wingbeat: study.toml:9:1: parameter.lower: cannot be combined with parameter.values\n");
   const std::string file = study(two + short_search + voltage);
   EXPECT_EQ(run({"optimise", file, "-o", path("best.toml")}).status, 2);
   EXPECT_EQ(run({"optimise", file, "--plot", path("front.jpg")}).status, 2);

@@ -136,7 +136,7 @@ TEST_F(Pitch, BadInputIsRefusedInOneSentence) {
   EXPECT_THAT(complaint({"pitch.stop=0 deg"}), HasSubstr("must be > 0 and < pi"));
   EXPECT_THAT(complaint({"wing.planform={shape=\"moments\", s2=2.457e-6, s3=1.048e-7}"}),
               HasSubstr("needs the wing's outline"));
-  EXPECT_THAT(complaint({"aerodynamics.pitch_coefficient=5 ms"}), HasSubstr("has no place in this vehicle"));
+  EXPECT_THAT(complaint({"aerodynamics.pitch_coefficient=5 ms"}), HasSubstr("does not apply to this vehicle"));
   EXPECT_THAT(complaint({"wing.pitch_inertia=3e-9 kg m2"}), HasSubstr("follows from wing.areal_density"));
   EXPECT_THAT(complaint({"pitch.stiffnes=3e-4 N m/rad"}), HasSubstr("pitch.stiffness"));
   EXPECT_THAT(complaint({"aerodynamics.coefficients=normal-force"}), HasSubstr("normal-force-robofly"));
@@ -259,7 +259,7 @@ TEST_F(Pitch, BadCranksAreRefusedInOneSentence) {
   EXPECT_THAT(complaint({"wing.planform={shape=\"moments\", s2=2.457e-6, s3=1.048e-7}"}, hinged_crank),
               HasSubstr("needs the wing's outline"));
   EXPECT_THAT(complaint({"aerodynamics.pitch_coefficient=5 ms"}, hinged_crank),
-              HasSubstr("has no place in this vehicle"));
+              HasSubstr("does not apply to this vehicle"));
   EXPECT_THAT(complaint({"pitch.stiffness=3e-4 N m/rad"}, plain), HasSubstr("pitch"));
 }
 

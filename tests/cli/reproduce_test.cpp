@@ -163,7 +163,11 @@ TEST_F(Reproduce, TheClaimsAreThoseCommitted) {
                            ours[n][0].find("near this flapping frequency") != std::string::npos;
         // So are the chord moments that come nearest to two values of which both cannot be met.
         const bool nearest = name.find("own_calibration") != std::string::npos;
-        const double scale = std::max(std::abs(y), name.find("deviation") != std::string::npos ? 1.0 : 0.0);
+        // What virtual work leaves open is rounding.
+        const double least = name.find("deviation") != std::string::npos  ? 1.0
+                             : name.find("residual") != std::string::npos ? 1e-9
+                                                                          : 0.0;
+        const double scale = std::max(std::abs(y), least);
         EXPECT_NEAR(x, y, scale * (place ? 5e-3 : nearest ? 1e-4 : 1e-6)) << ours[n][0] << ", " << name;
       } else {
         EXPECT_EQ(ours[n][column], expected[n][column]) << ours[n][0] << ", " << name;

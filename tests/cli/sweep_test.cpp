@@ -269,7 +269,7 @@ TEST_F(Sweep, WhatIsThereIsNeverOverwritten) {
   refused("o.nc", "holds another sweep (another study, vehicle, option or version of the program)");
   fs::remove(path("o.nc"));
   std::ofstream(path("o.nc.part")) << "mine";
-  refused("o.nc.part", "o.nc.part: is there without o.nc.journal");
+  refused("o.nc.part", "o.nc.part: exists without o.nc.journal");
   std::ofstream(path("o.nc.journal")) << "a text";
   refused("o.nc.journal", "is no journal of a sweep");
   std::ofstream(path("o.nc.journal")) << "wingbeat sweep\n" << std::string(33, '\0') + "x";

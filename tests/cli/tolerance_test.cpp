@@ -142,7 +142,7 @@ TEST_F(Tolerance, BadStudiesAreRefusedWithTheirPlace) {
   EXPECT_EQ(complaint("[[parameter]]\nkey = \"friction.radius\"\ndistribution = \"normal\"\ndeviation = \"2 kg\"\n"),
             "wingbeat: study.toml:6:1: parameter.deviation: expected a length such as \"5 mm\", got \"2 kg\"\n");
   EXPECT_EQ(complaint("[[parameter]]\nkey = \"friction.radius\"\ndistribution = \"uniform\"\nmedian = 1\n"),
-            "wingbeat: study.toml:6:1: parameter.median: has no place with distribution = \"uniform\"\n");
+            "wingbeat: study.toml:6:1: parameter.median: does not apply with distribution = \"uniform\"\n");
   EXPECT_EQ(complaint("[[parameter]]\nkey = \"friction.radius\"\ndistribution = \"uniform\"\n"
                       "lower = \"3 mm\"\nupper = \"2 mm\"\n"),
             "wingbeat: study.toml:7:1: parameter.upper: must exceed parameter.lower\n");
@@ -150,7 +150,7 @@ TEST_F(Tolerance, BadStudiesAreRefusedWithTheirPlace) {
       complaint("[[parameter]]\nkey = \"transmission.crank_radius\"\ndistribution = \"uniform\"\n"
                 "lower = \"30 mm\"\nupper = \"31 mm\"\n"),
       "wingbeat: study.toml:4:1: transmission.rod_length: at the parameters' means: must be longer than the crank "
-      "radius [m], got 0.02\n");
+      "radius [m], got 0.02 (20 mm)\n");
 }
 
 TEST_F(Tolerance, AVehicleThatNeverFlapsSaysSo) {
@@ -176,7 +176,7 @@ TEST_F(Tolerance, ChoicesOfModelInReportDataSetFigureAndJson) {
   const Outcome text = run({"tolerance", file, "-o", path("t.nc"), "--plot", path("t.svg")});
   ASSERT_EQ(text.status, 0) << text.err;
   for (const char* part :
-       {"256 scrambled Sobol samples, 640 vehicles with those for the indices",
+       {"256 scrambled Sobol samples, 640 vehicles including those for the indices",
         "Uncertain parameters and choices of model\n",
         "  formulation                       choice, rod-force 75 %, virtual-work 25 %\n",
         "The linear prediction is that of the most likely alternatives, rod-force (formulation),\n"
@@ -324,7 +324,7 @@ TEST_F(Tolerance, AlternativesThatMakeAnImpossibleVehicleAreRefusedByName) {
       complaint(choice("crank", "transmission.crank_radius = \"9 mm\"") +
                 choice("rod", "transmission.rod_length = \"8 mm\"")),
       "wingbeat: study.toml:8:72: choice.alternative.set.transmission.rod_length: with crank = own and rod = own: "
-      "transmission.rod_length: must be longer than the crank radius [m], got 0.008\n");
+      "transmission.rod_length: must be longer than the crank radius [m], got 0.008 (8 mm)\n");
   EXPECT_EQ(complaint(choice("friction", "friction.type = \"none\"") + friction),
             "wingbeat: study.toml:7:1: friction.radius: with friction = own, the vehicle does not have it\n");
   EXPECT_EQ(
@@ -332,7 +332,7 @@ TEST_F(Tolerance, AlternativesThatMakeAnImpossibleVehicleAreRefusedByName) {
                 "[[parameter]]\nkey = \"transmission.crank_radius\"\ndistribution = \"uniform\"\n"
                 "lower = \"5 mm\"\nupper = \"5.4 mm\"\n"),
       "wingbeat: study.toml:5:35: transmission.rod_length: with rod = own, at the parameters' means: must be longer "
-      "than the crank radius [m], got 0.0051\n");
+      "than the crank radius [m], got 0.0051 (5.1 mm)\n");
   EXPECT_EQ(
       complaint(choice("supply", "supply = { type = \"sine\", amplitude = \"3 V\", frequency = \"20 Hz\" }")),
       "wingbeat: study.toml:5:35: choice.alternative: with supply = own: supply.type: a sine supply gives no steady "

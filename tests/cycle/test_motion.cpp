@@ -254,7 +254,7 @@ TEST(Motion, DesignChecksNameTheirKey) {
               d.transmission.hinge_offset.reset();
               d.transmission.stroke_amplitude = 1.6;
             }),
-            "transmission.stroke_amplitude: must lie between 0 and pi/2 [rad], got 1.6");
+            "transmission.stroke_amplitude: must lie between 0 and pi/2 [rad], got 1.6 (91.67 deg)");
   EXPECT_EQ(refused([](D& d) {
               d.spring.stiffness = 1e-3;
               d.spring.resonance = 22.0;

@@ -443,7 +443,7 @@ TEST_F(BenchFile, RefusalsNamePlaceAndReason) {
               HasSubstr("must be > 0"));
   write("air.csv", "voltage_V,frequency_Hz,lift_mean_mN\n2,14,0\n3,22,8.7\n");
   EXPECT_THAT(error_of(head + parameter + deviation + log),
-              HasSubstr("air.csv:2:1: lift_mean: is 0, of which no relative standard deviation can be taken"));
+              HasSubstr("air.csv:2:1: lift_mean: is 0: give an absolute standard deviation"));
 }
 
 }  // namespace

@@ -70,7 +70,7 @@ TEST_F(FlightFiles, ErrorsNameLineKeyAndWhatIsExpected) {
   EXPECT_THAT(refused("[[gust]]\nstart = 1\n"), HasSubstr("gust.duration"));
   EXPECT_THAT(refused("[[waypoint]]\ntime = 2\n[[waypoint]]\ntime = 1\n"), HasSubstr("later"));
   EXPECT_THAT(refused("[limits]\nground = \"1 m\"\n"), HasSubstr("below the height"));
-  EXPECT_THAT(refused("metrics = [\"lift_mean_n\"]\n"), HasSubstr("has no place in a flight"));
+  EXPECT_THAT(refused("metrics = [\"lift_mean_n\"]\n"), HasSubstr("does not apply to a flight"));
 }
 
 }  // namespace

@@ -333,7 +333,7 @@ TEST_F(StudyFile, WrongStudiesAreRefused) {
       {"[samples]\nmethod = \"sobol\"\ncount = 3\n",
        "s.toml:3:2: samples.range: missing; expected [[samples.range]] sections"},
       {"[samples]\nmethod = \"sobol\"\nfile = \"d.csv\"\n",
-       "s.toml:5:1: samples.file: has no place with method = \"sobol\""},
+       "s.toml:5:1: samples.file: does not apply with method = \"sobol\""},
       {"[samples]\nmethod = \"csv\"\nfile = \"none.csv\"\n", "s.toml:5:1: samples.file: there is no file none.csv"},
       {"[samples]\nmethod = \"sobol\"\n[[samples.range]]\nkey = \"condition\"\n",
        "s.toml:6:1: samples.range.key: condition is not a number; make it an [[axis]]"},

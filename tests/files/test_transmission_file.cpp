@@ -70,7 +70,7 @@ TEST(TransmissionFile, WhatCannotBeIsRefused) {
   const std::string bars = file_of(TransmissionType::four_bar), law = file_of(TransmissionType::tabulated);
   EXPECT_EQ(refusal(bars, {"transmission.crank_radius=8 mm"}),
             "--set transmission.crank_radius=8 mm: transmission.crank_radius: must be the shortest link, or the crank "
-            "cannot turn (Grashof) [m], got 0.008");
+            "cannot turn (Grashof) [m], got 0.008 (8 mm)");
   EXPECT_EQ(
       refusal(bars, {"transmission.rod_length=20 mm"}),
       "--set transmission.rod_length=20 mm: transmission.rod_length: belongs to transmission.type = slider-crank, "

@@ -128,7 +128,7 @@ TEST(TwoSidesFile, RefusesWhatHasNoPlace) {
                                                  "transmission.type = \"direct\", it is \"slider-crank\""));
   EXPECT_THAT(refusal_of_sides(plain_text() + "[left]\nmotor.inertia = 7e-10\n",
                                {"supply={type=\"sine\",amplitude=9,resonance_ratio=1}"}),
-              HasSubstr("supply.resonance_ratio would give either side a frequency of its own"));
+              HasSubstr("supply.resonance_ratio would give the sides different frequencies"));
 }
 
 TEST(TwoSidesFile, OtherReadersRefuseIt) {

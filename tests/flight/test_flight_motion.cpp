@@ -154,6 +154,22 @@ TEST(FlightMotion, EnergyBalances) {
   }
 }
 
+// Under the pitch law the air turns standing wings otherwise to either side, so that the crank may neither stay nor go
+// for a side that is looked at alone.
+TEST(FlightMotion, ACrankWithoutVoltageFallsOnABodyThatTumbles) {
+  for (const double tolerance : {1e-8, 1e-6, 1e-4}) {
+    for (const Triple& rates : {Triple{}, Triple{15.0, -9.0, 4.0}}) {
+      FlightSimulation flight(flying("friction2022"), {.tolerance = tolerance});
+      flight.command({});
+      BodyState thrown;
+      thrown.rates = rates;
+      flight.start(thrown);
+      ASSERT_TRUE(flight.step_to(0.5)) << tolerance;
+      EXPECT_GT(flight.state().body.position[2], 0.2);
+    }
+  }
+}
+
 TEST(FlightMotion, WingMassLeavesTheBalanceClosed) {
   Design<double> d = flying_design("friction2022");
   d.body.wing_mass = 0.05e-3;

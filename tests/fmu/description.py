@@ -192,7 +192,8 @@ def problems_of(package):
         rule(state.get("variability") == "continuous", f"{state.get('name')}: states are continuous")
         summed = state.get("name").startswith("sum_")
         driven = state.get("name").startswith("state_supply_phase")
-        jumps = xml.find("ModelExchange") is not None and not summed and not driven
+        flies = state.get("name").startswith("state_body_")  # goes on smoothly where a drive jumps
+        jumps = xml.find("ModelExchange") is not None and not summed and not driven and not flies
         rule(typed(state, version).get("reinit") == ("true" if jumps else None), f"{state.get('name')}: reinit")
     for v in variables:
         rule(not typed(v, version).get("reinit") or v in states, f"{v.get('name')}: states alone are set anew")

@@ -16,6 +16,7 @@ PWM = ("--set", "supply.type=\"pwm\"", "--set", "supply.voltage=4", "--set", "su
 TWO = ("--set", "vehicle.motors=2")
 STOPS = ("--set", "pitch.stop=20 deg")
 HINGED_CRANK = "pitch-hinge-crank"
+FLYING = "flight-friction2022"
 
 
 def export(vehicle, version=2, *options):

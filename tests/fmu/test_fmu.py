@@ -7,7 +7,7 @@ import unittest
 
 import numpy as np
 from description import problems_of
-from exported import CRANK, DIRECT, HINGED, HINGED_CRANK, PWM, STOPS, TWO, export, run, steps
+from exported import CRANK, DIRECT, FLYING, HINGED, HINGED_CRANK, PWM, STOPS, TWO, export, run, steps
 from importer import FmuError, Instance, integrate
 
 
@@ -308,6 +308,51 @@ class Numbers(unittest.TestCase):
         self.assertLess(abs(power / expected["power_electrical_w"] - 1.0), 1e-5)
         self.assertEqual((roll, yaw), (0.0, 0.0))
         instance.close()
+
+
+class Bodies(unittest.TestCase):
+    def test_keep_the_rules_of_the_standard(self):
+        for options in ((), TWO, ("--set", "body.wing_mass=50 mg", "--set", "body.wing_centre=20 mm")):
+            for version in (2, 3):
+                package = export(FLYING, version, *options)
+                self.assertEqual(problems_of(package), [], (options, version))
+                for name in ("state_body_attitude_0", "wind_x", "body_force_z", "initial_body_pitch"):
+                    self.assertIn(name, package.variables)
+
+    def test_both_kinds_fly_alike(self):
+        """Thrown in wind, with the stroke planes moved and the voltage changed on the way."""
+        values = {"initial_body_velocity_x": 0.5, "initial_body_pitch": 0.2, "initial_body_rate_x": 1.0,
+                  "initial_body_position_z": -2.0, "wind_y": 0.4, "mean_stroke_angle": 0.05}  # fmt: skip
+        states = [f"body_{what}_{axis}" for what in ("position", "velocity", "rate") for axis in "xyz"]
+        states += [f"body_attitude_{k}" for k in range(4)] + ["crank_angle", "body_force_x", "lift_mean"]
+        found = []
+        for version in (2, 3):
+            package = export(FLYING, version)
+            co = Instance(package, True, 0.0, values={**values, "solver_tolerance": 1e-10})
+            me = Instance(package, False, 0.0, values=values)
+            for part in range(2):
+                steps(co, 0.1 * part, 0.1 * (part + 1), 0.01)
+                integrate(me, 0.1 * (part + 1), 1e-9)
+                if part == 1:
+                    break
+                me.event_mode()
+                for instance in (co, me):
+                    instance.set({"voltage": 5.0, "wind_x": -0.3, "stroke_plane_difference": 0.02})
+            np.testing.assert_allclose(co.get(*states), me.get(*states), rtol=1e-5, atol=1e-6)
+            found.append(co.get(*states))
+            self.assertGreater(np.linalg.norm(co.get("body_position_x", "body_position_y")), 0.02)
+            co.close(), me.close()
+        self.assertEqual(found[0], found[1])
+
+    def test_without_body_it_is_the_drive(self):
+        for version in (2, 3):
+            package = export(FLYING, version, "--without-body")
+            self.assertFalse([name for name in package.variables if name.startswith(("body_", "wind", "state_body"))])
+            instance = Instance(package, True, 0.0)
+            steps(instance, 0.0, 1.0, 0.1)
+            expected = run(FLYING)
+            self.assertLess(abs(instance.get("lift_mean")[0] / expected["lift_mean_n"] - 1.0), 1e-5)
+            instance.close()
 
 
 def euler_until(instance, end, only_where_told):

@@ -18,6 +18,7 @@ sys.dont_write_bytecode = True
 sys.path.insert(0, str(SITE))
 
 import checks  # noqa: E402
+import explorer_frame  # noqa: E402
 import gallery  # noqa: E402
 import python_reference  # noqa: E402
 import search_index  # noqa: E402
@@ -221,6 +222,31 @@ class Gallery(unittest.TestCase):
     def test_a_command_without_a_figure_is_refused(self):
         with self.assertRaises(LookupError):
             gallery.figure_of("wingbeat run friction2022")
+
+
+class ExplorerFrame(Folder):
+    TEXT = "Before.\n\n<!-- explorer: mechanism, lift of crank -->\n\nAfter.\n"
+
+    def framed(self, text, place="model.md"):
+        self.write("designs/crank.toml", "")
+        return explorer_frame.framed(text, self.folder / "explorer.html", place, self.folder / "designs")
+
+    def test_a_mark_becomes_a_frame_where_the_explorer_is(self):
+        self.assertEqual(self.framed(self.TEXT), "Before.\n\n\n\nAfter.\n")
+        self.write("explorer.html", "")
+        self.assertIn('src="explorer.html?embed=mechanism,lift#vehicle=crank"', self.framed(self.TEXT))
+        self.assertIn('href="../explorer.html#vehicle=crank"', self.framed(self.TEXT, "tutorials/own.md"))
+
+    def test_an_unknown_vehicle_is_refused(self):
+        with self.assertRaises(LookupError):
+            self.framed(self.TEXT.replace("crank", "none"))
+
+    def test_every_mark_of_the_pages_is_of_a_vehicle(self):
+        marks = [match for page in (ROOT / "docs").rglob("*.md")
+                 for match in explorer_frame.mark.finditer(page.read_text())]
+        self.assertGreaterEqual(len(marks), 4)
+        for match in marks:
+            self.assertTrue((ROOT / f"data/designs/{match[2]}.toml").is_file(), match[0])
 
 
 class Bibliography(unittest.TestCase):

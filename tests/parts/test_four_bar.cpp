@@ -164,12 +164,13 @@ TEST(FourBar, RefusesWhatCannotTurn) {
   FourBar<double> f = four_bar();
   f.crank_radius = 5.5e-3;
   EXPECT_EQ(refusal_of(f),
-            "transmission.crank_radius: must be the shortest link, or the crank cannot turn (Grashof) [m], got 0.0055");
+            "transmission.crank_radius: must be the shortest link, or the crank cannot turn (Grashof) [m], "
+            "got 0.0055 (5.5 mm)");
   f = four_bar();
   f.ground_length = 16.5e-3;
   EXPECT_EQ(refusal_of(f),
             "transmission.crank_radius: with the longest link must be shorter than the other two links together, or "
-            "the crank cannot turn (Grashof) [m], got 0.003");
+            "the crank cannot turn (Grashof) [m], got 0.003 (3 mm)");
   f = four_bar();
   f.ground_length = 15.99e-3;
   EXPECT_EQ(refusal_of(f).substr(0, 119),

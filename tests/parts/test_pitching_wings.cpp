@@ -360,7 +360,8 @@ TEST(PitchingWings, RefusesWhatNoWingIs) {
   EXPECT_EQ(refused([](P&) {}), "no error");
   EXPECT_EQ(refused([](P& p) { p.hinge.stiffness = -1e-4; }), "pitch.stiffness: must be >= 0 [N m/rad], got -0.0001");
   EXPECT_EQ(refused([](P& p) { p.hinge.damping = -1e-7; }), "pitch.damping: must be >= 0 [N m s/rad], got -1e-07");
-  EXPECT_EQ(refused([](P& p) { set_stops(p.hinge, -0.1); }), "pitch.stop: must be > 0 and < pi [rad], got -0.1");
+  EXPECT_EQ(refused([](P& p) { set_stops(p.hinge, -0.1); }),
+            "pitch.stop: must be > 0 and < pi [rad], got -0.1 (-5.73 deg)");
   EXPECT_EQ(refused([](P& p) { p.hinge.friction = -1e-6; }), "pitch.friction: must be >= 0 [N m], got -1e-06");
   EXPECT_EQ(refused([](P& p) { p.pitch_inertia = 0.0; }), "wing.pitch_inertia: must be > 0 [kg m2], got 0");
   EXPECT_EQ(refused([](P& p) { p.damping_coefficient = -5.0; }), "pitch.damping_coefficient: must be >= 0 [1], got -5");

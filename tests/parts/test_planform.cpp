@@ -202,9 +202,9 @@ TEST(Planform, RefusesShapesOutOfRange) {
   EXPECT_NO_THROW(validate(ellipse));
   EXPECT_EQ(refusal(ellipse, [](P& p) { p.length = 0.0; }), "wing.planform.length: must be > 0 [m], got 0");
   EXPECT_EQ(refusal(ellipse, [](P& p) { p.root_chord = -0.025; }),
-            "wing.planform.root_chord: must be > 0 [m], got -0.025");
+            "wing.planform.root_chord: must be > 0 [m], got -0.025 (-25 mm)");
   EXPECT_EQ(refusal(ellipse, [](P& p) { p.hub_offset = -1e-3; }),
-            "wing.planform.hub_offset: must be >= 0 [m], got -0.001");
+            "wing.planform.hub_offset: must be >= 0 [m], got -0.001 (-1 mm)");
   EXPECT_EQ(refusal(ellipse, [](P& p) { p.scale = 0.0; }), "wing.planform.scale: must be > 0 [1], got 0");
   EXPECT_EQ(refusal(P{}, [](P& p) { p.s2 = -1.0; }), "wing.planform.s2: must be >= 0 [m4], got -1");
   EXPECT_EQ(refusal(P{}, [](P& p) { p.s3 = std::nan(""); }), "wing.planform.s3: must be >= 0 [m5], got nan");

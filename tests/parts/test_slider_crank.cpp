@@ -195,9 +195,9 @@ TEST(SliderCrank, RefusesGeometryOutOfRange) {
   EXPECT_EQ(refusal(reference, [](C& c) { c.crank_radius = 0.0; }),
             "transmission.crank_radius: must be > 0 [m], got 0");
   EXPECT_EQ(refusal(reference, [](C& c) { c.rod_length = 5e-3; }),
-            "transmission.rod_length: must be longer than the crank radius [m], got 0.005");
+            "transmission.rod_length: must be longer than the crank radius [m], got 0.005 (5 mm)");
   EXPECT_EQ(refusal(reference, [](C& c) { c.hinge_offset = -6e-3; }),
-            "transmission.hinge_offset: must be > 0 [m], got -0.006");
+            "transmission.hinge_offset: must be > 0 [m], got -0.006 (-6 mm)");
   EXPECT_EQ(refusal(reference, [](C& c) { c.mid_stroke_height = std::nan(""); }),
             "transmission.mid_stroke_height: must be finite [m], got nan");
 }

@@ -182,7 +182,7 @@ TEST(DescribeEndurance, EveryEnd) {
   r.end = EnduranceEnd::empty;
   EXPECT_EQ(describe(r), no_mass + "the battery is empty after 120 s");
   r.hover = Hover::kept;
-  EXPECT_EQ(describe(r), "it hovers to the end; the battery is empty after 120 s");
+  EXPECT_EQ(describe(r), "it hovers until the flight ends; the battery is empty after 120 s");
   r.hover = Hover::never;
   last.metrics[Metric::lift_to_weight] = 0.5;
   EXPECT_EQ(describe(r), "it does not hover: lift is 0.5 of the weight at the start; the battery is empty after 120 s");

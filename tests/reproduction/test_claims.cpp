@@ -448,7 +448,7 @@ TEST(Published, EntriesThatMeanNothingAreRefused) {
               HasSubstr("published"));
   EXPECT_THAT(refusal("[[value]]\nvoltage = '3 V'\nmetric = 'lift_mean_n'\ndesign = 'a'\nchange = '9 %'\n"
                       "tolerance = 0.1\n"),
-              HasSubstr("belongs to a ratio, in place of published"));
+              HasSubstr("applies only to a ratio, instead of published"));
   EXPECT_THAT(refusal("[[uncertain]]\nkey = 'friction.radius'\nrelative_deviation = 0.4\nwhy = 'w'\n"),
               HasSubstr("must lie between 0 and 0.3"));
   EXPECT_THAT(refusal("[[uncertain]]\nkey = 'friction.colour'\nrelative_deviation = 0.1\nwhy = 'w'\n"),

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "vehicle/wide_boxes.hpp"
 #include "wingbeat/cycle/orbit_search.hpp"
 #include "wingbeat/files/design_file.hpp"
 #include "wingbeat/study/frequency_search.hpp"
@@ -58,6 +59,15 @@ TEST(HardVehicles, LiftIsRefusedUnderThermalRunawayWithoutRefiningIt) {
   const FrequencySearch search = find_voltage_for_lift(v, 0.62, {}, start_up_in_time(), {.nominal = v.voltage});
   EXPECT_EQ(search.outcome, FrequencyOutcome::too_high);
   EXPECT_LT(search.evaluations, 200);
+}
+
+// Its pitch law turns the wings by several right angles; two crank speeds almost balance, of which few crank angles
+// show one.
+TEST(HardVehicles, OfTwoOrbitsItIsTheOneReachedFromRest) {
+  const WideVehicle drawn = wide_vehicle(FarBox::crank_near_rod, 579);
+  const SteadyFlapping found = find_steady_flapping(resolve(drawn.design, drawn.condition), {}, start_up_in_time());
+  ASSERT_EQ(found.status, FlappingStatus::flapping);
+  EXPECT_NEAR(found.metrics[Metric::frequency], 26.696, 0.001);
 }
 
 }  // namespace

@@ -285,7 +285,7 @@ TEST(Heating, WhatIsNoHeatingCurveIsRefused) {
   EXPECT_THAT(said(c), HasSubstr("resistance: missing"));
   c = good;
   c.held_voltage = 2.0;
-  EXPECT_THAT(said(c), HasSubstr("has no place beside the current"));
+  EXPECT_THAT(said(c), HasSubstr("cannot be combined with the current"));
   c = good;
   c.motor = HeatedMotor::idling;
   EXPECT_THAT(said(c), HasSubstr("voltage: missing: of a motor that runs without load both are needed"));

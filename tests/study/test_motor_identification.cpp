@@ -337,6 +337,19 @@ TEST(Datasheet, MotorSectionReadsBackToTheSameMotor) {
   EXPECT_EQ(read.friction_torque, m.friction_torque);
 }
 
+TEST(Datasheet, StatedValuesAreWrittenAsStated) {
+  MotorDatasheet s;
+  s.voltage = 3.7;
+  s.resistance = 2.6;
+  s.torque_constant = 1.7e-3;
+  s.no_load_current = 0.02;
+  s.rotor_inertia = 5e-9;
+  s.gear_ratio = 12.0;
+  EXPECT_THAT(motor_section(identify_motor(s), s, "made by a test", Shaft::motor),
+              HasSubstr("armature_resistance = \"2.6 ohm\"\narmature_inductance = \"0 H\"\n"
+                        "torque_constant = \"0.0017 N m/A\"\ninertia = \"5e-09 kg m2\"\n"));
+}
+
 std::string error_of(const std::string& text) {
   try {
     parse_datasheet(text, "sheet.toml");

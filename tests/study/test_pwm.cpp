@@ -102,7 +102,7 @@ TEST(Pwm, LiftOutOfReach) {
   } catch (const ParameterError& e) {
     EXPECT_EQ(e.key(), "supply.voltage");
     EXPECT_EQ(e.reason(),
-              "0.03 N of lift takes 5.492 V on the average, more than the 4 V that the supply gives at a "
+              "0.03 N of lift takes 5.492 V on average, more than the 4 V that the supply gives at a "
               "duty of 1");
   }
   const RunResult unreachable = run_design(reference_design(), {.lift = 10.0});

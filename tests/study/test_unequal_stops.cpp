@@ -182,14 +182,14 @@ TEST(UnequalStops, BadOnesAreRefused) {
   d.pitch.stop_low = -0.3;
   EXPECT_EQ(refusal(d), "pitch.stop_high: missing: give both stop_low and stop_high, or stop to either side alike");
   d.pitch.stop_high = -0.1;
-  EXPECT_EQ(refusal(d), "pitch.stop_high: must be > 0 and < pi [rad], got -0.1");
+  EXPECT_EQ(refusal(d), "pitch.stop_high: must be > 0 and < pi [rad], got -0.1 (-5.73 deg)");
   d.pitch.stop_high = 0.1;
   EXPECT_EQ(refusal(d), "accepted");
   d.pitch.stop_low = 0.05;
-  EXPECT_EQ(refusal(d), "pitch.stop_low: must be < 0 and > -pi [rad], got 0.05");
+  EXPECT_EQ(refusal(d), "pitch.stop_low: must be < 0 and > -pi [rad], got 0.05 (2.865 deg)");
   d = direct_design();
   d.spring.rest_angle = 1.6;
-  EXPECT_EQ(refusal(d), "spring.rest_angle: must lie between -pi/2 and pi/2 [rad], got 1.6");
+  EXPECT_EQ(refusal(d), "spring.rest_angle: must lie between -pi/2 and pi/2 [rad], got 1.6 (91.67 deg)");
   d.spring = {};
   d.spring.rest_angle = 0.1;
   EXPECT_EQ(refusal(d), "spring.rest_angle: there are no springs to be at rest: give spring.stiffness");

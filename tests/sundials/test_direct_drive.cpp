@@ -329,7 +329,7 @@ TEST(DirectDrive, ValidateNamesWhatItCannotHave) {
   EXPECT_EQ(refused([](D& d) { d.spring = {}, d.spring.stiffness = 1e-3, d.wing.resonance = 100.0; }),
             "wing.resonance: leaves the wings no inertia beside the rotor's: must be lower [Hz], got 100");
   EXPECT_EQ(refused([](D& d) { d.aerodynamics.angle_of_attack_min = 1.6; }),
-            "aerodynamics.angle_of_attack_min: must be >= 0 and < pi/2 [rad], got 1.6");
+            "aerodynamics.angle_of_attack_min: must be >= 0 and < pi/2 [rad], got 1.6 (91.67 deg)");
 }
 
 TEST(PitchStop, OrbitOfCranksAgreesWithTheSimulation) {

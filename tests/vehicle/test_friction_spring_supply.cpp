@@ -66,7 +66,7 @@ TEST(Friction, DesignLawReachesItsOwnCoefficientOnly) {
 TEST(Friction, RefusesNegativeCoefficients) {
   using F = Friction<double>;
   EXPECT_NO_THROW(validate(F{}));
-  EXPECT_EQ(refusal(F{}, [](F& f) { f.radius = -2.5e-3; }), "friction.radius: must be >= 0 [m], got -0.0025");
+  EXPECT_EQ(refusal(F{}, [](F& f) { f.radius = -2.5e-3; }), "friction.radius: must be >= 0 [m], got -0.0025 (-2.5 mm)");
   EXPECT_EQ(refusal(F{}, [](F& f) { f.damping = -1.0; }), "friction.damping: must be >= 0 [N m s/rad], got -1");
   EXPECT_EQ(refusal(F{}, [](F& f) { f.quadratic = -1.0; }), "friction.coefficient: must be >= 0 [N m s2/rad2], got -1");
   EXPECT_EQ(refusal(F{}, [](F& f) { f.torque = -1.0; }), "friction.torque: must be >= 0 [N m], got -1");

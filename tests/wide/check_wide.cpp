@@ -25,6 +25,7 @@
 #include "vehicle/model_options.hpp"
 #include "vehicle/random_vehicle.hpp"
 #include "vehicle/wide_boxes.hpp"
+#include "wide/design_options.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
 #include "wingbeat/ensemble/ensemble_member.hpp"
 #include "wingbeat/report/describe.hpp"
@@ -124,72 +125,26 @@ bool on_a_sine(const Design<double>& d) {
   return d.supply.type == SupplyType::sine && d.transmission.type != TransmissionType::direct;
 }
 
-/// As options of wingbeat run.
-void print_design(const WideVehicle& vehicle) {
-  const Design<double>& d = vehicle.design;
-  const auto set = [](const char* key, double value) { std::printf(" --set %s=%.17g", key, value); };
-  const auto choose = [](const char* key, const char* value) { std::printf(" --set %s=%s", key, value); };
-  constexpr const char* supplies[] = {"constant", "sine", "pwm", "battery"};
-  choose("supply.type", supplies[int(d.supply.type)]);
-  if (d.supply.type == SupplyType::battery) {
-    const Battery<double>& b = d.supply.battery;
-    set("supply.cells", b.cells), set("supply.cell_voltage", b.cell_voltage);
-    set("supply.internal_resistance", b.internal_resistance), set("supply.capacity", b.capacity);
-    set("supply.charge", b.charge);
-  } else {
-    set(d.supply.type == SupplyType::sine ? "supply.amplitude" : "supply.voltage", d.supply.voltage);
-    if (d.supply.type != SupplyType::constant) set("supply.frequency", d.supply.frequency);
-    if (d.supply.type == SupplyType::pwm) set("supply.duty", d.supply.duty);
+/// How many answers are off by more than 1, 10 and 100 times the tolerance, and the most.
+struct Errors {
+  std::array<int, 3> beyond{};
+  double largest = 0.0;
+
+  void add(double error) {
+    double limit = tolerance;
+    for (int& count : beyond) count += !(error <= limit), limit *= 10.0;
+    largest = std::max(largest, error);
   }
-  const Motor<double>& m = d.motor.constants;
-  set("motor.armature_resistance", m.armature_resistance), set("motor.armature_inductance", m.armature_inductance);
-  set("motor.torque_constant", m.torque_constant), set("motor.inertia", m.inertia);
-  set("motor.viscous_damping", m.viscous_damping), set("motor.friction_torque", m.friction_torque);
-  const auto& t = d.transmission;
-  if (t.type == TransmissionType::four_bar) {
-    choose("transmission.type", "four-bar");
-    set("transmission.crank_radius", t.crank_radius), set("transmission.coupler_length", t.coupler_length);
-    set("transmission.rocker_length", t.rocker_length), set("transmission.ground_length", t.ground_length);
-    set("transmission.stroke_ratio", t.stroke_ratio);
-    if (t.ground_angle) set("transmission.ground_angle", degrees_per_radian * *t.ground_angle);
+  void add(const Errors& other) {
+    for (std::size_t n = 0; n < beyond.size(); ++n) beyond[n] += other.beyond[n];
+    largest = std::max(largest, other.largest);
   }
-  if (t.type == TransmissionType::slider_crank) {
-    set("transmission.crank_radius", t.crank_radius), set("transmission.rod_length", t.rod_length);
-    set("transmission.hinge_offset", *t.hinge_offset);
-    choose("transmission.formulation", t.formulation == Formulation::rod_force ? "rod-force" : "virtual-work");
-  }
-  constexpr const char* laws[] = {"none", "load-proportional", "viscous", "quadratic", "constant"};
-  constexpr const char* coefficients[] = {"", "radius", "damping", "coefficient", "torque"};
-  choose("friction.type", laws[int(d.friction.law)]);
-  if (d.friction.law != FrictionLaw::none) {
-    set((std::string("friction.") + coefficients[int(d.friction.law)]).c_str(), d.friction.coefficient);
-  }
-  if (d.spring.stiffness) set("spring.stiffness", *d.spring.stiffness);
-  if (d.spring.resonance) set("spring.resonance", *d.spring.resonance);
-  set("wing.inertia", d.wing.inertia);
-  std::printf(" --set 'wing.planform={shape=\"moments\", s2=%.17g, s3=%.17g", d.wing.planform.s2, d.wing.planform.s3);
-  if (d.wing.planform.s22) std::printf(", s22=%.17g", *d.wing.planform.s22);
-  std::printf("}'");
-  if (d.aerodynamics.added_mass) choose("aerodynamics.added_mass", "true");
-  if (d.motor.gear_efficiency) set("motor.gear_efficiency", *d.motor.gear_efficiency);
-  if (d.motor.thermal.resistance_winding) {
-    set("motor.thermal_resistance_winding", *d.motor.thermal.resistance_winding);
-    set("motor.thermal_resistance_case", *d.motor.thermal.resistance_case);
-    set("motor.magnet_temperature_coefficient", d.motor.thermal.magnet_temperature_coefficient);
-  }
-  set("aerodynamics.pitch_coefficient", d.aerodynamics.pitch_coefficient);
-  if (d.aerodynamics.angle_of_attack_min) {
-    set("aerodynamics.angle_of_attack_min", degrees_per_radian * *d.aerodynamics.angle_of_attack_min);
-  }
-  constexpr const char* conditions[] = {"air", "vacuum", "wingless"};
-  std::printf(" --condition %s%s\n", conditions[int(vehicle.condition)],
-              d.aerodynamics.coefficients.table ? " (and a table of coefficients)" : "");
-}
+};
 
 struct Counts {
   int vehicles = 0, by_status[5] = {}, batched_other = 0, orbit_other = 0, batched_differs = 0, orbit_differs = 0,
       undecided = 0, averages = 0;
-  int flapping = 0, batched_outside = 0, orbit_outside = 0, transient_outside = 0, by_packs = 0;
+  Errors batched, orbit, transient;
   double orbit_seconds = 0.0, transient_seconds = 0.0, batched_seconds = 0.0;
 };
 
@@ -215,9 +170,9 @@ void print_header() {
 void print_row(const std::string& name, const Counts& c) {
   std::printf("%-24s %5d | %5d %6d %5d %4d %10d | %7d %7d | %7d %7d | %7d %6d %6d | %8.2f ms %6.3f s %8.2f s\n",
               name.c_str(), c.vehicles, c.by_status[0], c.by_status[1], c.by_status[2], c.by_status[3], c.by_status[4],
-              c.batched_differs, c.orbit_differs, c.batched_other, c.orbit_other, c.batched_outside, c.orbit_outside,
-              c.transient_outside, 1e3 * c.batched_seconds / std::max(1, c.vehicles), c.orbit_seconds,
-              c.transient_seconds);
+              c.batched_differs, c.orbit_differs, c.batched_other, c.orbit_other, c.batched.beyond[0],
+              c.orbit.beyond[0], c.transient.beyond[0], 1e3 * c.batched_seconds / std::max(1, c.vehicles),
+              c.orbit_seconds, c.transient_seconds);
 }
 
 void add(Counts& to, const Counts& c) {
@@ -228,9 +183,9 @@ void add(Counts& to, const Counts& c) {
   to.batched_other += c.batched_other;
   to.orbit_other += c.orbit_other;
   to.undecided += c.undecided;
-  to.batched_outside += c.batched_outside;
-  to.orbit_outside += c.orbit_outside;
-  to.transient_outside += c.transient_outside;
+  to.batched.add(c.batched);
+  to.orbit.add(c.orbit);
+  to.transient.add(c.transient);
   to.batched_seconds += c.batched_seconds;
   to.orbit_seconds = std::max(to.orbit_seconds, c.orbit_seconds);
   to.transient_seconds = std::max(to.transient_seconds, c.transient_seconds);
@@ -353,13 +308,13 @@ Counts check_box(FarBox box, const Arguments& arguments) {
     c.orbit_differs += orbit_differs;
     c.orbit_seconds = std::max(c.orbit_seconds, v.orbit.seconds);
     c.transient_seconds = std::max(c.transient_seconds, v.transient.seconds);
-    const auto outside = [&](const Answer& a) {
-      return v.any_flapping() && a.asked && a.decided && a.status == FlappingStatus::flapping &&
-             !(largest_error(a.metrics, v.reference.metrics) <= tolerance);
+    const auto compare = [&](const Answer& a, Errors& errors) {
+      if (!v.any_flapping() || !a.asked || !a.decided || a.status != FlappingStatus::flapping) return;
+      errors.add(largest_error(a.metrics, v.reference.metrics));
     };
-    c.batched_outside += outside(v.batched);
-    c.orbit_outside += outside(v.orbit);
-    c.transient_outside += !averages && outside(v.transient);
+    if (!batched_other) compare(v.batched, c.batched);
+    if (!orbit_other) compare(v.orbit, c.orbit);
+    if (!averages) compare(v.transient, c.transient);
     const bool slow = v.orbit.seconds > 0.5 || v.transient.seconds > 5.0;
     if (one || batched_differs || orbit_differs || batched_other || orbit_other || !v.transient.decided || slow) {
       std::printf("%s %u: batched %s%s, orbit %s (%.3f s), transient %s (%.2f s)\n    orbit: %s\n    transient: %s\n",
@@ -486,6 +441,11 @@ int main(int argc, char** argv) {
   print_header();
   for (const auto& [name, counts] : rows) print_row(name, counts);
   if (rows.size() > 1) print_row("all", total);
+  for (const auto& [name, errors] :
+       {std::pair{"batched", &total.batched}, {"orbit", &total.orbit}, {"simulation", &total.transient}}) {
+    std::printf("metrics by %s: off by more than 1e-6 %d, 1e-5 %d, 1e-4 %d; the most %.2g\n", name, errors->beyond[0],
+                errors->beyond[1], errors->beyond[2], errors->largest);
+  }
   std::printf("%.0f s on %d threads\n", seconds, arguments.threads);
   return total.batched_differs + total.orbit_differs + total.batched_other + total.orbit_other > 0 ? 1 : 0;
 }

@@ -163,10 +163,12 @@ BalancedSpeed<S> balanced_on_grid(const V<S>& v, std::span<const LoadPlace<S>> p
   const S no_load = no_load_speed(v), near = S(0.1) * stall_torque(v);
   BalancedSpeed<S> balanced{no_load, S(0.0), S(0.0)};
   S before = S(0.02) * no_load, surplus_before = torque_surplus(v, places, before), surplus_earlier = surplus_before;
+  auto found = S(0.0) > S(0.0);
   const auto note_balance = [&](const S& below, const S& surplus_below, const S& omega, const S& surplus) {
     const auto crossed = surplus_below > S(0.0) && surplus <= S(0.0);
     const S root = below + (omega - below) * surplus_below / (surplus_below - surplus);
-    const auto first = crossed && balanced.count == S(0.0);
+    const auto first = crossed && !found;
+    found = found || crossed;
     balanced.slowest = select<S>(first, root, balanced.slowest);
     balanced.slope = select<S>(first, (surplus - surplus_below) / (omega - below), balanced.slope);
     balanced.count = select<S>(crossed, balanced.count + S(1.0), balanced.count);

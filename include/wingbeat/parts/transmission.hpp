@@ -31,6 +31,12 @@ struct CrankKinematics {
   S stroke_second_derivative;  ///< \f$B_2 = \mathrm{d}^2\beta/\mathrm{d}\theta^2\f$ [1]
   S wing_jacobian;             ///< g: moment on all wings per unit of F [m]
   S crank_jacobian;            ///< h: torque on the crank per unit of F [m]; h = g B1 conserves power
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.stroke_offset, self.tan_stroke, self.stroke_slope, self.stroke_second_derivative,
+               self.wing_jacobian, self.crank_jacobian);
+  }
 };
 
 /// Stroke angle beta [rad]. Apart from the kinematics because only springs and reports need it.

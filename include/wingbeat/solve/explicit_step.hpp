@@ -121,23 +121,19 @@ constexpr void unroll(std::index_sequence<j...>, F&& f) {
 
 }  // namespace detail
 
-/// One step of the 8(5,3) pair. `first` holds the rates at (x, y) on this branch. `System` provides Real, State,
-/// Quadrature, Switches, Signs and
-///   `template <bool quadratures> Rates<System> rates(const Real& x, const State& y, const Signs& branch) const`
-///   `bool admissible(const State& y) const`
-///   `static controlled_integrals`: indices of the integrals whose error is wanted
-/// The system's equations must be smooth on the branch over the whole step.
-template <bool quadratures, class System>
-StepResult<System> explicit_step(const System& system, const typename System::Real& x, const typename System::State& y,
-                                 const typename System::Real& h, const typename System::Signs& branch,
-                                 const Rates<System>& first) {
+namespace detail {
+
+/// explicit_step() between stages at given places, which rates() takes; `end` is left out.
+template <bool quadratures, class System, class Places>
+StepResult<System> explicit_step_at(const System& system, const Places& places, const typename System::State& y,
+                                    const typename System::Real& h, const typename System::Signs& branch,
+                                    const Rates<System>& first) {
   using Real = typename System::Real;
   constexpr std::size_t states = std::tuple_size_v<typename System::State>;
   constexpr std::size_t integrals = std::tuple_size_v<typename System::Quadrature>;
   constexpr std::size_t stages = dop853::stages;
 
   StepResult<System> result;
-  const auto configurations = detail::stage_configurations(system, x, h);
   std::array<typename System::State, stages> k;
   k[0] = first.dy;
   if constexpr (quadratures) {
@@ -147,13 +143,13 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
       result.integral_error5[q] = dop853::e5[0] * first.dq[q];
     }
   }
-  detail::unroll(std::make_index_sequence<stages - 1>{}, [&](auto before) {
+  unroll(std::make_index_sequence<stages - 1>{}, [&](auto before) {
     constexpr std::size_t stage = before + 1;
     if (!result.admissible) return;
     typename System::State moved = y;
     for (std::size_t n = 0; n < states; ++n) {
       Real sum = dop853::a[stage][0] * k[0][n];
-      detail::unroll(std::make_index_sequence<stage - 1>{}, [&](auto earlier) {
+      unroll(std::make_index_sequence<stage - 1>{}, [&](auto earlier) {
         constexpr std::size_t j = earlier + 1;
         if constexpr (dop853::a[stage][j] != 0.0) sum = sum + dop853::a[stage][j] * k[j][n];
       });
@@ -164,7 +160,7 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
       return;
     }
     const Rates<System> rates =
-        system.template rates < quadratures && dop853::b[stage] != 0.0 > (configurations[stage], moved, branch);
+        system.template rates < quadratures && dop853::b[stage] != 0.0 > (places[stage], moved, branch);
     k[stage] = rates.dy;
     if constexpr (quadratures && stage == stages - 1) {
       result.last_stage = moved;
@@ -194,7 +190,7 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
     Real sum = dop853::b[0] * k[0][n];
     Real third = dop853::e3[0] * k[0][n];
     Real fifth = dop853::e5[0] * k[0][n];
-    detail::unroll(std::make_index_sequence<stages - 1>{}, [&](auto before) {
+    unroll(std::make_index_sequence<stages - 1>{}, [&](auto before) {
       constexpr std::size_t j = before + 1;
       if constexpr (dop853::b[j] != 0.0) sum = sum + dop853::b[j] * k[j][n];
       if constexpr (dop853::e3[j] != 0.0) third = third + dop853::e3[j] * k[j][n];
@@ -213,8 +209,25 @@ StepResult<System> explicit_step(const System& system, const typename System::Re
       result.integral_error5[q] = h * result.integral_error5[q];
     }
   }
-  result.end = configurations[stages - 1];
   result.admissible = system.admissible(result.y);
+  return result;
+}
+
+}  // namespace detail
+
+/// One step of the 8(5,3) pair. `first` holds the rates at (x, y) on this branch. `System` provides Real, State,
+/// Quadrature, Switches, Signs and
+///   `template <bool quadratures> Rates<System> rates(const Real& x, const State& y, const Signs& branch) const`
+///   `bool admissible(const State& y) const`
+///   `static controlled_integrals`: indices of the integrals whose error is wanted
+/// The system's equations must be smooth on the branch over the whole step.
+template <bool quadratures, class System>
+StepResult<System> explicit_step(const System& system, const typename System::Real& x, const typename System::State& y,
+                                 const typename System::Real& h, const typename System::Signs& branch,
+                                 const Rates<System>& first) {
+  const auto places = detail::stage_configurations(system, x, h);
+  StepResult<System> result = detail::explicit_step_at<quadratures>(system, places, y, h, branch, first);
+  result.end = places[dop853::stages - 1];
   return result;
 }
 

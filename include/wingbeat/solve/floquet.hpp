@@ -14,6 +14,7 @@
 #include <tuple>
 
 #include "wingbeat/core/jet.hpp"
+#include "wingbeat/core/members.hpp"
 #include "wingbeat/solve/iterate.hpp"
 #include "wingbeat/solve/linear.hpp"
 
@@ -78,6 +79,28 @@ struct MatrixProduct {
 
 namespace detail {
 
+/// A place of the iterate for the system on dual numbers. Where the system computes configurations, those are computed
+/// on doubles: they do not depend on the state.
+template <class JetSystem, class System>
+auto place_on(const ConfigurationOf<System>& place) {
+  using Real = typename JetSystem::Real;
+  if constexpr (HasConfigurations<System>) return cast<Real>(place);
+  else return Real(place);
+}
+
+/// The derivative of a recorded explicit step.
+template <class JetSystem, class System>
+typename JetSystem::State explicit_factor(const System& system, const JetSystem& jets, const Step<System>& step,
+                                          const typename JetSystem::State& y, const Rates<JetSystem>& first) {
+  const auto places = stage_configurations(system, step.x, step.h);
+  std::array<decltype(place_on<JetSystem, System>(places[0])), dop853::stages> on_jets;
+  for (std::size_t stage = 1; stage < dop853::stages; ++stage) {
+    on_jets[stage] = place_on<JetSystem, System>(places[stage]);
+  }
+  return explicit_step_at<false>(jets, on_jets, y, typename JetSystem::Real(step.h), signs_of<JetSystem>(step), first)
+      .y;
+}
+
 /// The flow's derivative over a recorded explicit step, by `pieces` implicit steps on the variational equation.
 template <class JetSystem, class System>
 auto stiff_factor(const System& system, const JetSystem& jets, const Iterate<System>& iterate, const Step<System>& step,
@@ -94,10 +117,11 @@ auto stiff_factor(const System& system, const JetSystem& jets, const Iterate<Sys
     std::array<double, unknowns * n> trajectory;  // of the derivative at the stages
     for (std::size_t j = 0; j < stages; ++j) {
       const double x = step.x + (piece + tableau.c[j]) * h;
+      const auto place = place_on<JetSystem, System>(configuration_at(system, x));
       const typename System::State state = evaluate_inside<false>(system, iterate, step, x).y;
       typename JetSystem::State y;
       for (std::size_t k = 0; k < n; ++k) y[k] = typename JetSystem::Real(state[k], int(k));
-      const Rates<JetSystem> rates = jets.template rates<false>(typename JetSystem::Real(x), y, signs);
+      const Rates<JetSystem> rates = jets.template rates<false>(place, y, signs);
       for (std::size_t i = 0; i < stages; ++i) {
         for (std::size_t k = 0; k < n * n; ++k) {
           const std::size_t row = i * n + k / n, column = j * n + k % n;
@@ -157,7 +181,9 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Iterat
     return y;
   };
   const auto rates_at_start = [&](std::size_t k, const State& y) {
-    return jets.template rates<false>(Real(iterate.steps[k].x), y, signs_of<JetSystem>(iterate.steps[k]));
+    const Step<System>& step = iterate.steps[k];
+    const auto place = detail::place_on<JetSystem, System>(configuration_at(system, step.x));
+    return jets.template rates<false>(place, y, signs_of<JetSystem>(step));
   };
 
   MatrixProduct<n> product;
@@ -182,10 +208,10 @@ auto monodromy_product(const System& system, const JetSystem& jets, const Iterat
       const int pieces = std::min(int(std::ceil(quickest / resolved)), max_pieces);
       product.append(detail::stiff_factor(system, jets, iterate, step, pieces));
     } else {
-      const typename JetSystem::Signs signs = signs_of<JetSystem>(step);
-      append_derivatives(iterate.method == Method::explicit_pair
-                             ? explicit_step<false>(jets, Real(step.x), y, Real(step.h), signs, first).y
-                             : implicit_step<false>(jets, system, Real(step.x), y, Real(step.h), signs).y);
+      append_derivatives(
+          iterate.method == Method::explicit_pair
+              ? detail::explicit_factor(system, jets, step, y, first)
+              : implicit_step<false>(jets, system, Real(step.x), y, Real(step.h), signs_of<JetSystem>(step)).y);
     }
     y = next_y;
     first = next;

@@ -78,16 +78,22 @@ struct IdentifiedConstant {
 
 /// One value of the sheet beside what the identified motor gives for it.
 struct DatasheetCheck {
-  std::string name;
+  std::string name, unit;  ///< SI
   double published;
   double identified;
   double deviation;  ///< identified / published - 1
 };
 
+/// A number without the rounding errors of a fit: that of 12 digits where that is as near as fits converge, 3e-13.
+double without_rounding_errors(double x);
+
+/// A value [SI] in a unit of data sheets: "2.11 mN m/A", "13250 rpm".
+std::string datasheet_text(double value, std::string_view unit);
+
 /// Two ways to one constant that do not agree.
 struct Contradiction {
-  std::string constant;       ///< "armature resistance"
-  std::string first, second;  ///< what each rests on
+  std::string constant, unit;  ///< "armature resistance", SI
+  std::string first, second;   ///< what each rests on
   double first_value, second_value;
   double size;         ///< relative difference
   bool gross = false;  ///< beyond contradiction_factor

@@ -12,6 +12,7 @@
 
 #include "wingbeat/study/allocation.hpp"
 #include "wingbeat/study/bench_fit.hpp"
+#include "wingbeat/study/flight_numbers.hpp"
 #include "wingbeat/study/prescribed_flapping.hpp"
 
 namespace wingbeat {
@@ -24,15 +25,21 @@ enum class ValidationModel {
   passive_pitch,      ///< pitch under a stated stroke
   ratios,             ///< exponents and ratios of a vehicle near hover
   prescribed_flight,  ///< mean loads along a stated stroke and pitch in forward flight
+  flight,             ///< trim, modes and maps of a vehicle with a body in hover
   maps,               ///< lift and moments over what commands the drives
   resistance          ///< a battery's resistance, one number at every frequency
 };
 template <>
 inline constexpr std::pair<const char*, ValidationModel> names_of<ValidationModel>[] = {
-    {"none", ValidationModel::none},     {"prescribed", ValidationModel::prescribed},
-    {"bench", ValidationModel::bench},   {"passive-pitch", ValidationModel::passive_pitch},
-    {"ratios", ValidationModel::ratios}, {"prescribed-flight", ValidationModel::prescribed_flight},
-    {"maps", ValidationModel::maps},     {"resistance", ValidationModel::resistance}};
+    {"none", ValidationModel::none},
+    {"prescribed", ValidationModel::prescribed},
+    {"bench", ValidationModel::bench},
+    {"passive-pitch", ValidationModel::passive_pitch},
+    {"ratios", ValidationModel::ratios},
+    {"prescribed-flight", ValidationModel::prescribed_flight},
+    {"flight", ValidationModel::flight},
+    {"maps", ValidationModel::maps},
+    {"resistance", ValidationModel::resistance}};
 
 /// Which rows a fit may see.
 enum class ValidationSplit {
@@ -119,9 +126,22 @@ struct MapsProblem {
   std::vector<double> inputs;  ///< of each point, of its map [V] or [1]
 };
 struct ResistanceProblem {};
+/// Of a vehicle with a body in hover: the first quantities are its numbers, the others its maps.
+struct FlightProblem {
+  struct Map {
+    FlightControl control = FlightControl::voltage;
+    FlightLoad load = FlightLoad::lift;
+    std::vector<double> settings;  ///< of each point
+  };
+  FlightVehicle vehicle;
+  std::vector<FlightNumber> numbers;
+  std::vector<Map> maps;
+  std::vector<double> per_value;  ///< of each quantity: SI value over the measured number
+};
 
-using ValidationProblem = std::variant<std::monostate, PrescribedProblem, BenchProblem, PassivePitchProblem,
-                                       RatiosProblem, MapsProblem, ResistanceProblem, PrescribedFlightProblem>;
+using ValidationProblem =
+    std::variant<std::monostate, PrescribedProblem, BenchProblem, PassivePitchProblem, RatiosProblem, MapsProblem,
+                 ResistanceProblem, PrescribedFlightProblem, FlightProblem>;
 
 /// A measured set and what is to be computed of it.
 struct ValidationSet {

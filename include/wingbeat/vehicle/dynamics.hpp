@@ -154,15 +154,19 @@ bool force_has_branches(const Vehicle<S>& v) {
   return drive_of(v).rotates || value_of(v.friction.radius) > 0.0;
 }
 
-/// A mode with those signs that follow from the instant alone: stroke velocity, pitch velocity, bound of the angle of
-/// attack. `keeps_bound`: the last is that of `mode` where the accelerations jump with it.
+/// A mode with those signs that follow from the instant and, of a shaft whose torque jumps with its direction, from
+/// that of `mode`: stroke velocity, pitch velocity, bound of the angle of attack. `keeps_bound`: the last is that of
+/// `mode` where the accelerations jump with it.
 template <Scalar S>
 Mode<S> with_signs_of_motion(const Vehicle<S>& v, const FullState<S>& instant, Mode<S> mode, bool keeps_bound = false) {
   using std::abs;
-  const S stroke_velocity = instant.configuration.kinematics.stroke_slope * instant.omega;
-  // A shaft that is about to leave rest moves as it will.
-  mode.stroke = !drive_of(v).rotates && jumps_at_rest(v) ? mode.direction : sign_of(stroke_velocity);
-  if (!drive_of(v).rotates && !jumps_at_rest(v)) mode.direction = mode.stroke;
+  const S stroke_slope = instant.configuration.kinematics.stroke_slope, stroke_velocity = stroke_slope * instant.omega;
+  if (jumps_at_rest(v)) {
+    // A shaft that is about to leave rest moves as it will, and does not turn back within a smooth piece.
+    mode.stroke = mode.direction * sign_of(stroke_slope);
+  } else {
+    mode.stroke = mode.direction = sign_of(stroke_velocity);
+  }
   if (pitches(v)) {
     // Wings that friction of their joint lets go turn as they will.
     if (!has_friction(v.pitch.hinge)) mode.turn = sign_of(instant.pitch_velocity);

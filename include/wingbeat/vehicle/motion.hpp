@@ -77,6 +77,11 @@ struct Configuration {
   CrankKinematics<S> kinematics;
   S spring_moment;          ///< N_w k beta [N m]
   S stroke_angle = S(0.0);  ///< beta [rad], of wings whose loads depend on it; 0 of others
+
+  template <class Self, class Use>
+  static constexpr auto members(Self& self, const Use& use) {
+    return use(self.kinematics, self.spring_moment, self.stroke_angle);
+  }
 };
 
 /// The configuration at a crank angle given by its sine and cosine.

@@ -113,7 +113,7 @@ template <Scalar S>
 void set_parameter(Design<S>& design, std::string_view path, const S& value) {
   const Parameter<S>& parameter = numeric_parameter<S>(path);
   if (parameter.set(design, value)) return;
-  throw ParameterError(std::string(path), parameter.only_with.empty() ? "has no place in this design"
+  throw ParameterError(std::string(path), parameter.only_with.empty() ? "does not apply to this design"
                                                                       : "only with " + with_or(parameter.only_with));
 }
 

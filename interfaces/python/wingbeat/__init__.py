@@ -16,9 +16,8 @@
     wb.optimise("optimise-hover").vehicle               # likewise tolerance, endurance, identify_motor
     wb.plot.cycle(result)                               # figures, with matplotlib
 
-Units: wherever a quantity is expected, a number is SI (an angle in radians), and a text has its unit: 0.005 or "5 mm".
-What comes back is SI. A vehicle that does not flap is a result, never an exception; input that cannot be used raises
-InputError.
+Units: a quantity is a number in SI (an angle in radians) or a text with its unit: 0.005 or "5 mm". Results are in SI. A
+vehicle that does not flap is a result, never an exception; invalid input raises InputError.
 """
 
 import importlib

@@ -49,7 +49,8 @@ def _statuses_in(dataset: xarray.Dataset) -> list[str]:
 
 
 def status_of(dataset: xarray.Dataset) -> xarray.DataArray:
-    """"flapping", "stalled", ... of each design, of a data set of this package or of a file that xarray has opened."""
+    """The status of each design, "flapping", "stalled", ..., in a data set of this package or a file opened by
+    xarray."""
     status = dataset["status"]
     return status.copy(data=_names_of(status.values))
 
@@ -68,7 +69,7 @@ class DataSet:
 
     @property
     def vehicle(self) -> Vehicle:
-        """The vehicle that keys were varied of."""
+        """The vehicle whose keys were varied."""
         return Vehicle.from_toml(self._dataset.attrs["vehicle"], "vehicle of the data set")
 
     def __getattr__(self, name: str) -> xarray.DataArray:
@@ -85,12 +86,12 @@ class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
     """The data set of a sweep, an `xarray.Dataset` with metrics by the names of this package.
 
     `data.lift_mean`, or `data["lift_mean"]`, is the variable `lift_mean_n` of the file. The status of each design,
-    "flapping", "stalled", ..., is a coordinate of the data set, which selections, `where` and arithmetic leave as it is:
-    `data.status` and `data["status"]` are the same texts. Between designs, as of `interp` and `coarsen`, there is none.
-    `to_netcdf` writes it as the number that files of the program have, `status_code`.
+    "flapping", "stalled", ..., is a coordinate of the data set, which selections, `where` and arithmetic keep:
+    `data.status` and `data["status"]` are the same texts. `interp` and `coarsen`, whose results lie between designs,
+    drop it. `to_netcdf` writes it as a number, `status_code`, as files of the program have it.
 
-    What the methods and operators of a SweepData return is a SweepData again. What xarray makes elsewhere (`rolling`,
-    `xarray.merge`) may be a plain data set; there `dataset.wingbeat` has the same names.
+    Methods and operators of a SweepData return a SweepData. Other functions of xarray (`rolling`, `xarray.merge`) may
+    return a plain data set; there `dataset.wingbeat` has the same names.
 
     Examples
     --------
@@ -108,7 +109,7 @@ class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
 
     @property
     def status_code(self) -> xarray.DataArray:
-        """The status of each design as files have it, 0 for flapping: the index in the list of statuses."""
+        """The status of each design as a number, as in files, 0 for flapping: the index in the list of statuses."""
         codes: xarray.DataArray = self["status"].copy(data=_codes_of(self["status"].values))
         return codes
 
@@ -154,12 +155,12 @@ class SweepData(xarray.Dataset):  # type: ignore[no-untyped-call]
         Parameters
         ----------
         *arguments, **options
-            As of `xarray.Dataset.to_netcdf`, the first of them the path.
+            Those of `xarray.Dataset.to_netcdf`; the first is the path.
 
         Returns
         -------
         object
-            What `xarray.Dataset.to_netcdf` returns.
+            The result of `xarray.Dataset.to_netcdf`.
 
         Examples
         --------

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 class Ensemble:
     """Results of all designs, as arrays in the order of the designs.
 
-    Metrics are attributes: `result.lift_mean`, NaN where a design does not have one.
+    Metrics are attributes: `result.lift_mean`, NaN if a design does not have the metric.
 
     Examples
     --------
@@ -65,7 +65,7 @@ class Ensemble:
 
     @property
     def flapping(self) -> npt.NDArray[np.bool_]:
-        """True for each design that flaps (as asked for)."""
+        """True for each design that flaps (at the requested frequency, lift or power)."""
         return np.equal(self.status_code, 0)
 
     def __getattr__(self, name: str) -> npt.NDArray[np.float64]:
@@ -90,8 +90,8 @@ class Ensemble:
     ) -> npt.NDArray[np.float64]:
         """Exact derivatives of metrics by numeric keys of the vehicle, of every design, on all cores.
 
-        The voltage is held; where the designs were solved at a frequency or a lift, that is. NaN for designs that do not
-        flap and for metrics without derivatives (floquet_multiplier_max). The keys need not be columns.
+        The voltage is held, or the frequency or lift that the designs were solved for. NaN for designs that do not flap
+        and for metrics without derivatives (floquet_multiplier_max). The keys need not be columns.
 
         Parameters
         ----------
@@ -102,13 +102,13 @@ class Ensemble:
         threads : int, default 0
             Number of threads at most; 0: one for each core.
         progress : bool or function, optional
-            True shows a bar, a function is called with designs done and designs.
+            True shows a bar, a function is called with the designs done and their total.
 
         Returns
         -------
         numpy.ndarray, shape (designs, metrics, keys)
-            Derivatives [unit of the metric per unit of the key]; a metric or key that is named alone, not in a list,
-            has no dimension.
+            Derivatives [unit of the metric per unit of the key]; a single metric or key, not in a list, has no
+            dimension.
 
         Raises
         ------
@@ -139,7 +139,7 @@ class Ensemble:
         return every[:, 0] if isinstance(metrics, str) else every
 
     def to_xarray(self) -> xarray.Dataset:
-        """All of it over the dimension `design`, with units and long names.
+        """All results over the dimension `design`, with units and long names.
 
         Returns
         -------
@@ -149,7 +149,7 @@ class Ensemble:
         Raises
         ------
         ImportError
-            Where xarray is not installed.
+            If xarray is not installed.
 
         Examples
         --------
@@ -215,15 +215,15 @@ def solve_columns(
     Parameters
     ----------
     columns : dict or DataFrame
-        An array of SI numbers, or of texts with units, for each numeric key that varies; other values hold for all
-        designs. The keys "frequency", "lift", "lift_to_weight" and "power" are held by the voltage as the options of
+        An array of SI numbers, or of texts with units, for each numeric key that varies; single values hold for all
+        designs. The keys "frequency", "lift", "lift_to_weight" and "power" are held by the voltage, like the options of
         these names.
     vehicle : Vehicle, optional
-        The vehicle with all keys that are no column; not needed where the columns state a whole vehicle.
+        The vehicle with all keys that are not columns; not needed if the columns state a whole vehicle.
     frequency : float or str, optional
         Flapping frequency of all designs [Hz]; the voltage of each is found.
     lift : float or str, optional
-        Mean lift of all designs [N]; the lowest voltage that yields it is found.
+        Mean lift of all designs [N]; the lowest voltage for it is found.
     lift_to_weight : float, optional
         Lift over weight of all designs [1], likewise; 1: hover.
     power : float or str, optional
@@ -233,13 +233,13 @@ def solve_columns(
     condition : str, default 'air'
         "air", "vacuum" or "wingless".
     tolerance : float, default 1e-06
-        Wanted relative accuracy of every metric, 1e-12 to 1e-2.
+        Requested relative accuracy of every metric, 1e-12 to 1e-2.
     metrics : list of str, optional
-        Names of the metrics to compute, fewer cost less; default: all but hover and endurance.
+        Names of the metrics to compute, fewer take less time; default: all but hover and endurance.
     threads : int, default 0
         Number of threads at most; 0: one for each core.
     progress : bool or function, optional
-        True shows a bar (tqdm where it is installed), a function is called with designs done and designs.
+        True shows a bar (tqdm if it is installed), a function is called with the designs done and their total.
 
     Returns
     -------
@@ -249,13 +249,14 @@ def solve_columns(
     Raises
     ------
     InputError
-        For a key that is unknown or has no place in the vehicle.
+        For a key that is unknown or does not apply to the vehicle.
     ValueError
-        Where no key has an array, or arrays differ in length.
+        If no key has an array, or arrays differ in length.
 
     Notes
     -----
-    A design out of its physical range has the status "invalid". Other Python threads run meanwhile; Ctrl-C ends it.
+    A design out of its physical range has the status "invalid". Other Python threads run during the call; Ctrl-C ends
+    it.
 
     Examples
     --------

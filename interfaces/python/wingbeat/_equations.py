@@ -18,14 +18,14 @@ if TYPE_CHECKING:
 class EquationsOfMotion:
     """The equations of motion of a vehicle in time: `scipy.integrate.solve_ivp(equations.rates, ...)`.
 
-    The state is crank angle, not wrapped [rad], crank speed [rad/s] and, with an armature inductance, current [A]; of a
-    direct drive stroke angle [rad], flapping velocity [rad/s] and current; behind them, of wings that pitch on hinges,
-    pitch angle [rad] and pitch velocity [rad/s]: `states` has the names. The motor is as warm as its surroundings.
+    The state is crank angle, not wrapped [rad], crank speed [rad/s] and, with an armature inductance, current [A]; for
+    a direct drive stroke angle [rad], flapping velocity [rad/s] and current; for wings on hinges also pitch angle [rad]
+    and pitch velocity [rad/s]. `states` has the names. The motor is at ambient temperature.
 
-    Rates are continuous but for standstill, where friction changes its direction, and for what the supply does; they
-    have kinks where the rod force, the stroke velocity, the pitch velocity or the torque of a lossy gearbox changes sign.
-    Standstill is no part of them: where friction holds a crank, they are those of a crank about to turn forwards. Nor
-    are the stops of hinges: they are those of wings that go on beyond them. `wingbeat.Simulation` has both.
+    Rates are continuous except at standstill, where friction changes its direction, and at jumps of the supply; they
+    have kinks where the rod force, the stroke velocity, the pitch velocity or the torque of a lossy gearbox changes
+    sign. Standstill and stops of hinges are not included: the rates are those of a crank that begins to turn forwards,
+    and of wings that move beyond their stops. `wingbeat.Simulation` includes both.
 
     Parameters
     ----------
@@ -64,7 +64,7 @@ class EquationsOfMotion:
         state : array_like, shape (k,) or (k, n)
             A number for each of the k `states` [SI], or a column for each of n states.
         voltage : float or str, optional
-            Voltage that drives the motor in place of the supply [V], through the same resistance.
+            Voltage that replaces the supply [V], through the same resistance.
 
         Returns
         -------

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 
 class InputError(ValueError):
-    """Input that cannot be used: a vehicle, a value, an option.
+    """Invalid input: a vehicle, a value, an option.
 
-    Its text says where, which key and what was expected: "motor.inertia: must be > 0 [kg m2], got -1".
+    The message names location, key and expected value: "motor.inertia: must be > 0 [kg m2], got -1".
 
     Attributes
     ----------
     file : str or None
-        The file, or None where the input was no file.
+        The file, or None if the input was not a file.
     line, column : int or None
         From 1, or None.
     key : str
-        The key or option it is about, "" where it is about none.
+        The key or option, or "".
     others : list of InputError
-        What else is wrong, each an InputError.
+        Further errors, each an InputError.
 
     Examples
     --------

@@ -35,7 +35,7 @@ def step(
     models: ControlModels, outputs: Iterable[str] | None = None, *, figure: Figure | None = None,
     width: float | str = "89 mm",
 ) -> Figure:
-    """How the means of a cycle follow a step of each input, over the steady change or, without one, the largest.
+    """Step responses of the means of a cycle to each input, relative to the steady change or, without one, the largest.
 
     Parameters
     ----------
@@ -56,9 +56,9 @@ def step(
     Raises
     ------
     InputError
-        For a negative duration, and for an unknown kind of event.
+        For an output that the model does not have.
     ValueError
-        Where the vehicle does not flap.
+        If the vehicle does not flap.
 
     Examples
     --------
@@ -116,7 +116,7 @@ def bode(
     models: ControlModels, input: str = "voltage", outputs: Iterable[str] | None = None, *,
     figure: Figure | None = None, width: float | str = "89 mm",
 ) -> Figure:
-    """The frequency response of the model from one cycle to the next, to half a flapping frequency.
+    """The frequency response of the discrete model, up to half the flapping frequency.
 
     Parameters
     ----------
@@ -141,7 +141,7 @@ def bode(
     InputError
         For an input or output that the model does not have, and for outputs without a steady gain.
     ValueError
-        Where the vehicle does not flap.
+        If the vehicle does not flap.
 
     Examples
     --------

@@ -42,7 +42,7 @@ def cycle(result: RunResult, *, figure: Figure | None = None, width: float | str
     Raises
     ------
     ValueError
-        Unless the vehicle flaps.
+        If the vehicle does not flap.
 
     Examples
     --------
@@ -128,7 +128,7 @@ def power_flow(
     Parameters
     ----------
     results : RunResult or dict
-        A RunResult that flaps; or a dict of several, by the names beside their bars.
+        A RunResult that flaps; or a dict of several, by the names of their bars.
     ax : matplotlib Axes, optional
         The Axes to draw into; default: those of a new figure.
     width : float or str, default "89 mm"
@@ -142,7 +142,7 @@ def power_flow(
     Raises
     ------
     ValueError
-        Unless all of them flap.
+        If any of them does not flap.
 
     Notes
     -----
@@ -193,7 +193,7 @@ def power_flow(
 
 
 def start_up(start: StartUp, *, figure: Figure | None = None, width: float | str = "89 mm") -> Figure:
-    """Crank speed and current over a start-up, with the inrush and the time until flapping is steady.
+    """Crank speed and current over a start-up, with the inrush current and the time to steady flapping.
 
     Parameters
     ----------
@@ -269,7 +269,7 @@ def flight(found: Flight, *, figure: Figure | None = None, width: float | str = 
     Raises
     ------
     ValueError
-        Where the vehicle does not flap.
+        If the vehicle does not flap.
 
     Examples
     --------

@@ -26,7 +26,7 @@ def front(
     found: Front, across: str | None = None, up: str | None = None, *, ax: Axes | None = None,
     width: float | str = "89 mm",
 ) -> Axes:
-    """The designs of a front, in two of their metrics, with its ends and its knee.
+    """The designs of a front over two metrics, with its ends and its knee.
 
     Parameters
     ----------
@@ -49,7 +49,7 @@ def front(
     InputError
         For an unknown metric.
     ValueError
-        Where no design was found.
+        If no design was found.
 
     Examples
     --------
@@ -97,7 +97,7 @@ def front(
 
 
 def residuals(found: Found, *, figure: Figure | None = None, width: float | str = "89 mm") -> Figure:
-    """A fit against its measurements, and what is left, in standard deviations, in the order of the logs.
+    """Fitted values against measurements, and residuals in standard deviations, in the order of the logs.
 
     Parameters
     ----------
@@ -111,12 +111,12 @@ def residuals(found: Found, *, figure: Figure | None = None, width: float | str 
     Returns
     -------
     matplotlib Figure
-        Above, fitted over measured values, each over the largest of its quantity; below, the residuals.
+        Above, fitted over measured values, normalised by the largest of each quantity; below, the residuals.
 
     Raises
     ------
     ValueError
-        Where nothing was fitted.
+        If nothing was fitted.
 
     Examples
     --------
@@ -171,14 +171,14 @@ def tolerance(
     found: StudyResult, metrics: Iterable[str] | None = None, *, ax: Axes | None = None,
     width: float | str = "89 mm",
 ) -> Axes:
-    """How far metrics scatter about their medians: 95 % of the vehicles (bar) and all of them (line).
+    """Scatter of metrics about their medians: 95 % of the vehicles (bar) and all of them (line).
 
     Parameters
     ----------
     found : StudyResult
         The result of `wingbeat.tolerance`.
     metrics : list of str, optional
-        Names of metrics; default: frequency, power, lift, stroke amplitude and efficiency, those that scatter.
+        Names of metrics; default: those of frequency, power, lift, stroke amplitude and efficiency that scatter.
     ax : matplotlib Axes, optional
         The Axes to draw into; default: those of a new figure.
     width : float or str, default "89 mm"
@@ -235,7 +235,7 @@ def tolerance(
 def sensitivity(
     found: StudyResult, metric: str, *, ax: Axes | None = None, width: float | str = "89 mm"
 ) -> Axes:
-    """Which uncertain parameters a metric's variance comes from, with 95 % intervals, the greatest share first.
+    """Share of each uncertain parameter in the variance of a metric, with 95 % intervals, the largest first.
 
     Parameters
     ----------

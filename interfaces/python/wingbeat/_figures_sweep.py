@@ -226,8 +226,8 @@ def lines(
 ) -> Axes:
     """A metric of a sweep over its axis of numbers, a curve for each combination of its other axes.
 
-    Springs, surroundings and an ordered number decide the colour of a curve, the formulation its dash. A grey
-    band marks what lies outside the model's domain; where the vehicle does not flap there is no line.
+    The colour of a curve shows springs, condition or an ordered number, its dash the formulation. A grey band marks
+    designs outside the model's domain; there is no line if the vehicle does not flap.
 
     Parameters
     ----------
@@ -315,7 +315,7 @@ def contours(
 ) -> Axes:
     """A metric of a sweep over its two axes of numbers, with a colour bar.
 
-    Grey is where the vehicle does not flap, hatched what lies outside the model's domain, dashed where the lift equals
+    Designs that do not flap are grey, designs outside the model's domain hatched; a dashed line marks a lift equal to
     the weight.
 
     Parameters
@@ -332,7 +332,7 @@ def contours(
     Returns
     -------
     matplotlib Axes
-        With a colour bar beside them.
+        The Axes, with a colour bar.
 
     Raises
     ------

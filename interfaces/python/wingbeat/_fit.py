@@ -55,40 +55,40 @@ def fit(
     compare_friction: bool = False,
     threads: int = 0,
 ) -> Found:
-    """A vehicle's parameters from bench measurements, and how sure they are: `wingbeat fit`.
+    """A vehicle's parameters from bench measurements, with their uncertainty: `wingbeat fit`.
 
     Parameters
     ----------
     vehicle : Vehicle, path or dict
-        A Vehicle with the start of the fit; or a bench alone, as the path of a bench file (TOML), the name of a shipped
-        one, or a dict of its tables, which names its vehicle.
+        A Vehicle with the start values of the fit; or only a bench, as the path of a bench file (TOML), the name of a
+        shipped one, or a dict of its tables, which names its vehicle.
     data : DataFrame, xarray.Dataset, dict, path or list, optional
         With a Vehicle: the measurements, a table with a row for each operating point, in memory or as a CSV file.
-        Columns are named with their units as in logs: "voltage_V" or "frequency_Hz" for what was set,
-        "current_mean_mA", "Lift (g)" and so on for what was measured; a Dataset may have metrics by name with
-        `attrs["units"]`. A NaN or NA is left out. Several logs are a list, each a table or a dict such as `{"data":
+        Columns are named with their units as in logs: "voltage_V" or "frequency_Hz" for the set quantity,
+        "current_mean_mA", "Lift (g)" and so on for measured ones; a Dataset may have metrics by name with
+        `attrs["units"]`. A NaN or NA is left out. Give several logs as a list, each a table or a dict such as `{"data":
         frame, "condition": "vacuum"}` with the keys of `[[log]]` in bench files. A dict of the tables of a bench file
-        is taken as well.
+        is also accepted.
     parameters : dict or list of dict, optional
         The fitted keys with their bounds: `{"friction.radius": ("0 mm", "8 mm")}`, SI numbers or texts with a unit; a
-        third value is the start, in place of the vehicle's. A list holds tables `[[parameter]]` of bench files.
+        third value is the start value, instead of the vehicle's. A list holds tables `[[parameter]]` of bench files.
         Needed unless `data` are the tables of a bench file.
     deviation : float, str or dict, optional
-        Standard deviation of the measured values: a number is relative to each value [1]; "estimated" (the default) has
-        it estimated from the residuals, which takes at least six more values than parameters in each column. A dict has
-        one for each column, `{"default": 0.01, "frequency": "0.1 Hz"}`, where a text with a unit is absolute.
+        Standard deviation of the measured values: a number is relative to each value [1]; "estimated" (the default)
+        uses the residuals, which needs at least six more values than parameters in each column. A dict has one for each
+        column, `{"default": 0.01, "frequency": "0.1 Hz"}`, where a text with a unit is absolute.
     condition : str, optional
         Where `data` were measured: "air" (the default), "vacuum" or "wingless". A log of a list may state its own.
     springs : bool, optional
         Whether the springs were on; needed with a vehicle that has springs.
     loss : str, optional
-        How much outliers count: "none" (the default), "huber", "soft-l1" or "cauchy".
+        Robust loss against outliers: "none" (the default), "huber", "soft-l1" or "cauchy".
     values : dict, optional
-        Keys of the vehicle with other values: SI numbers, or texts with a unit.
+        Values that replace those of the vehicle: SI numbers, or texts with a unit.
     profiles : bool, default True
-        Compute intervals from profiles; False takes them from the curvature alone, which is faster.
+        Compute intervals from profiles; False uses only the curvature, which is faster.
     compare_friction : bool, default False
-        Fit one friction law after the other as well.
+        Also fit each friction law.
     threads : int, default 0
         Number of threads at most; 0: one for each core. The result does not depend on it.
 
@@ -100,13 +100,13 @@ def fit(
     Raises
     ------
     InputError
-        For measurements, parameters or options that cannot be used.
+        For invalid measurements, parameters or options.
     TypeError
         For a Vehicle without data, and for data or parameters of another kind.
 
     Notes
     -----
-    Other Python threads run meanwhile; Ctrl-C ends it.
+    Other Python threads run during the call; Ctrl-C ends it.
 
     Examples
     --------

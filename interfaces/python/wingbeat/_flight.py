@@ -29,7 +29,7 @@ GRAVITY = 9.80665
 
 
 class BodyState(NamedTuple):
-    """Where a body is and how it moves.
+    """Position, attitude and motion of a body.
 
     Body axes: x forward, y to the right, z down, from the centre of mass. Earth axes: x north, y east, z down.
 
@@ -61,7 +61,7 @@ class BodyState(NamedTuple):
         rates : array_like, shape (3,), default (0.0, 0.0, 0.0)
             Roll, pitch and yaw rate [rad/s].
         euler_angles : array_like, shape (3,), default (0.0, 0.0, 0.0)
-            Roll, pitch and yaw [rad], turned in the order yaw, pitch, roll.
+            Roll, pitch and yaw [rad], applied in the order yaw, pitch, roll.
 
         Returns
         -------
@@ -91,7 +91,7 @@ class BodyState(NamedTuple):
 
     @property
     def rotation(self) -> npt.NDArray[np.float64]:
-        """The matrix that takes vectors of body axes to earth axes."""
+        """The matrix that transforms vectors from body to earth axes."""
         turned: npt.NDArray[np.float64] = rotations(np.asarray(self.attitude)[None, :])[0]
         return turned
 
@@ -142,7 +142,7 @@ class FlightSimulation:
     vehicle : Vehicle
         A vehicle with a body.
     tolerance : float, default 1e-07
-        Admissible relative error of an integration step, 1e-12 to 1e-2.
+        Largest relative error of an integration step, 1e-12 to 1e-2.
     gravity : float or str, default 9.80665
         Acceleration of free fall [m/s2].
     frozen : bool, default False
@@ -151,13 +151,13 @@ class FlightSimulation:
     Raises
     ------
     InputError
-        For a vehicle without a body, or one whose flight is not modelled, and for options that cannot be used.
+        For a vehicle without a body or with parts that flight does not model, and for invalid options.
 
     Notes
     -----
-    It begins upright at the origin with the drives at rest, under the vehicle's stated voltage; `start` begins
-    elsewhere, for example in trim. A flight has one user at a time: another thread, or a function of the wind, must not
-    step it meanwhile. `copy.copy` makes an independent one, for example to go back to a moment.
+    The flight begins upright at the origin with the drives at rest, under the vehicle's stated voltage; `start` begins
+    elsewhere, for example in trim. Use a flight in one thread at a time; a wind function must not step it. `copy.copy`
+    makes an independent flight, for example to return to a moment.
 
     Examples
     --------
@@ -197,7 +197,7 @@ class FlightSimulation:
 
     @property
     def body(self) -> BodyState:
-        """Where the body is and how it moves."""
+        """Position, attitude and motion of the body."""
         return body_of(self._flight.body())
 
     @property
@@ -233,23 +233,23 @@ class FlightSimulation:
 
     @property
     def stored_energy(self) -> float:
-        """Energy of drives and body, over the height of the origin [J]."""
+        """Energy of drives and body, relative to the height of the origin [J]."""
         return self._flight.stored_energy()
 
     @property
     def cycle_time(self) -> float:
-        """About the time of a wingbeat [s]."""
+        """Approximate time of a wingbeat [s]."""
         return self._flight.cycle_time()
 
     def start(self, body: BodyState | None = None, drives: Any = None) -> None:
-        """Starts at time 0 from there, with totals of zero. Controls and wind stay.
+        """Starts at time 0 from a state, with totals of zero. Controls and wind are kept.
 
         Parameters
         ----------
         body : BodyState, optional
-            The body; without it at rest, upright, at the origin.
+            The body; default: at rest, upright, at the origin.
         drives : array_like, shape (drives, 9), optional
-            The drives, as the attribute `drives` has them; without it at rest.
+            The drives, in the form of the attribute `drives`; default: at rest.
 
         Raises
         ------
@@ -272,7 +272,7 @@ class FlightSimulation:
         self._flight.start(numbers_of_body(BodyState.at() if body is None else body), rows)
 
     def place(self, body: BodyState) -> None:
-        """Moves the body alone; drives and time stay.
+        """Moves the body; drives and time are kept.
 
         Parameters
         ----------
@@ -294,7 +294,7 @@ class FlightSimulation:
         self._flight.place(numbers_of_body(body))
 
     def command(self, controls: Mapping[str, float | str]) -> None:
-        """Sets controls from now on; those that are not named stay.
+        """Sets controls from now on; controls that are not named are kept.
 
         Parameters
         ----------
@@ -329,7 +329,7 @@ class FlightSimulation:
         ----------
         wind : array_like or function or None
             Three numbers [m/s] in earth axes, or a function of time [s] and position [m], three numbers, that returns
-            them; None: still air. A function is called at any moments of a step and should be smooth within it.
+            them; None: still air. A function is called at any time within a step and should be smooth there.
 
         Raises
         ------
@@ -353,7 +353,7 @@ class FlightSimulation:
         self._wind = wind
 
     def step_to(self, time: float | str) -> bool:
-        """Goes on to a time [s].
+        """Steps to a time [s].
 
         Parameters
         ----------
@@ -363,19 +363,19 @@ class FlightSimulation:
         Returns
         -------
         bool
-            False where a mechanism has jammed: time stands.
+            False if a mechanism has jammed; time then stops.
 
         Raises
         ------
         InputError
             For a time in the past.
         RuntimeError
-            Where the integration fails.
+            If the integration fails.
 
         Notes
         -----
-        Other Python threads run meanwhile. After an exception of a function of the wind, or Ctrl-C, the flight is as
-        before the call.
+        Other Python threads run during the call. After an exception in a wind function, or Ctrl-C, the flight has its
+        state from before the call.
 
         Examples
         --------
@@ -386,7 +386,7 @@ class FlightSimulation:
         return self._flight.step_to(number("time", time, "s"))
 
     def step(self, duration: float | str) -> bool:
-        """Goes on for a time [s], as `step_to` does.
+        """Steps for a time [s], like `step_to`.
 
         Parameters
         ----------
@@ -396,7 +396,7 @@ class FlightSimulation:
         Returns
         -------
         bool
-            False where a mechanism has jammed: time stands.
+            False if a mechanism has jammed; time then stops.
 
         Raises
         ------

@@ -14,14 +14,14 @@ except ImportError:
 
 
 class Box:
-    """A box in which observations or actions lie: what `gymnasium.spaces.Box` is used for, where that is missing.
+    """The range of observations or actions, instead of `gymnasium.spaces.Box` if Gymnasium is not installed.
 
     Parameters
     ----------
     low : array_like
-        The least of each number.
+        The lower limit of each number.
     high : array_like
-        The greatest of each number, of the same shape.
+        The upper limit of each number, of the same shape.
     dtype : type, default 'float32'
         Of the arrays.
 
@@ -40,12 +40,12 @@ class Box:
         self._random: np.random.Generator | None = None
 
     def seed(self, seed: int | None = None) -> int:
-        """Seeds what `sample` draws.
+        """Seeds the random numbers of `sample`.
 
         Parameters
         ----------
         seed : int, optional
-            The seed; without it one from the system.
+            The seed; default: one from the system.
 
         Returns
         -------
@@ -86,12 +86,12 @@ class Box:
         Parameters
         ----------
         x : numpy.ndarray
-            What is asked about.
+            The array to check.
 
         Returns
         -------
         bool
-            Whether it lies in the box, its edges included.
+            True if the array lies in the box or on its edges.
 
         Examples
         --------

@@ -56,21 +56,21 @@ class FlightVectorEnv(VectorBase):  # type: ignore[misc]
         Parameters
         ----------
         seed : int or list of int, optional
-            Of the random numbers: a seed for each flight, or that of the first one, each other one's larger by 1.
+            A seed for each flight, or that of the first one; each further flight has a seed larger by 1.
         options : dict, optional
-            As of FlightEnv.
+            As for FlightEnv.
 
         Returns
         -------
         observations : numpy.ndarray, shape (n, size)
             The observations of each environment.
         infos : dict
-            As of FlightEnv, in arrays.
+            As for FlightEnv, in arrays.
 
         Raises
         ------
         InputError
-            For options that are not known, and for another number of seeds.
+            For unknown options, and for a wrong number of seeds.
 
         Examples
         --------
@@ -94,7 +94,7 @@ class FlightVectorEnv(VectorBase):  # type: ignore[misc]
         return self._flights.observe(), self._infos(np.zeros(self.num_envs, dtype=np.int64))
 
     def step(self, actions: Any) -> tuple[Any, Any, Any, Any, dict[str, Any]]:
-        """Flies one step of control of each flight, side by side.
+        """Flies one control step of each flight.
 
         Parameters
         ----------
@@ -112,7 +112,7 @@ class FlightVectorEnv(VectorBase):  # type: ignore[misc]
         truncations : numpy.ndarray, shape (n,)
             Whether the time of the episode is over.
         infos : dict
-            As of FlightEnv, in arrays; with autoreset="SameStep" also "final_obs" and "final_info".
+            As for FlightEnv, in arrays; with autoreset="SameStep" also "final_obs" and "final_info".
 
         Raises
         ------

@@ -48,17 +48,17 @@ class LinearModel:
         self.D = _matrix(model["D"], len(inputs))
 
     def to_scipy(self) -> Any:
-        """As scipy.signal.StateSpace, with `dt` where it has one.
+        """The model as scipy.signal.StateSpace, with `dt` if it is discrete.
 
         Returns
         -------
         scipy.signal.StateSpace
-            Of deviations in SI units, with the time step [s] where the model is discrete.
+            Of deviations in SI units, with the time step [s] if the model is discrete.
 
         Raises
         ------
         ImportError
-            Where SciPy is not installed.
+            If SciPy is not installed.
 
         Examples
         --------
@@ -71,17 +71,17 @@ class LinearModel:
         return signal.StateSpace(*matrices) if self.dt is None else signal.StateSpace(*matrices, dt=self.dt)
 
     def to_control(self) -> Any:
-        """As control.StateSpace of the package `control`, with names.
+        """The model as control.StateSpace of the package `control`, with names.
 
         Returns
         -------
         control.StateSpace
-            Of deviations in SI units, with the time step [s] where the model is discrete.
+            Of deviations in SI units, with the time step [s] if the model is discrete.
 
         Raises
         ------
         ImportError
-            Where `control` is not installed.
+            If `control` is not installed.
 
         Examples
         --------
@@ -132,19 +132,19 @@ class ControlModels(StudyResult):
         Raises
         ------
         ValueError
-            Where the vehicle does not flap.
+            If the vehicle does not flap.
         """
         model = self._model()
         return LinearModel(model, _names(model["inputs"]), _names(model["outputs"]), float(model["period_s"]))
 
     @property
     def continuous(self) -> LinearModel:
-        """The model in continuous time, without what settles within a cycle.
+        """The model in continuous time, without modes that settle within a cycle.
 
         Raises
         ------
         ValueError
-            Where the vehicle does not flap.
+            If the vehicle does not flap.
         """
         model = self._model()
         return LinearModel(model["continuous"], _names(model["inputs"]), _names(model["outputs"]), None)
@@ -173,7 +173,7 @@ def linearise(
     frequency : float or str, optional
         Flapping frequency of the operating point [Hz]; its voltage is found.
     lift : float or str, optional
-        Mean lift of the operating point [N], in place of a frequency; its voltage is found.
+        Mean lift of the operating point [N], instead of a frequency; its voltage is found.
     allow_extrapolation : bool, default False
         The search for a frequency or a lift may leave the model's domain.
     cycles : int, default 0
@@ -181,7 +181,7 @@ def linearise(
     hinge_offset : float or str, default 0.0
         Distance from the body's middle plane to the axis of a wing's stroke [m].
     maps : bool, default True
-        False: without the static maps, which take most of the time.
+        Compute the static maps, which take most of the time.
 
     Returns
     -------
@@ -191,7 +191,7 @@ def linearise(
     Raises
     ------
     InputError
-        For options that cannot be used.
+        For invalid options.
 
     Examples
     --------

@@ -48,7 +48,7 @@ class VehicleMethods(FlightMethods):
         Returns
         -------
         RunResult
-            Whether it flaps or not.
+            The result, whether it flaps or not.
 
         Examples
         --------
@@ -232,7 +232,7 @@ class VehicleMethods(FlightMethods):
         compare_friction: bool = False,
         threads: int = 0,
     ) -> Found:
-        """Its parameters from bench measurements, and how sure they are: `wingbeat.fit`.
+        """Its parameters from bench measurements, with their uncertainty: `wingbeat.fit`.
 
         Examples
         --------

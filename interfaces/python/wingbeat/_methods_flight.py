@@ -81,7 +81,7 @@ class FlightMethods:
         threads: int = 0,
         progress: bool | Callable[[int, int], object] | None = None,
     ) -> StudyResult:
-        """What uncertain parameters do to its steady flight: `wingbeat.flight_tolerance`.
+        """Effect of uncertain parameters on its steady flight: `wingbeat.flight_tolerance`.
 
         Examples
         --------

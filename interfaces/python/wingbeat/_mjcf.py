@@ -99,18 +99,18 @@ def export_mjcf(
     timestep : float or str, default 0.0001
         Step of MuJoCo's integrator [s].
     force : bool, default False
-        Replaces a file that is there.
+        Replace an existing file.
 
     Raises
     ------
     InputError
-        For a vehicle without a body, and for a file that is there already.
+        For a vehicle without a body, and for an existing file.
 
     Notes
     -----
     One free body with the mass and the moments of inertia of the whole vehicle. Wings, tail and fin are drawn, without
-    mass and without contact; their loads come from `interfaces/mujoco`, each step anew. Axes of MuJoCo: x forward, y to
-    the left, z up.
+    mass and without contact; `interfaces/mujoco` computes their loads in each step. Axes of MuJoCo: x forward, y to the
+    left, z up.
 
     Examples
     --------

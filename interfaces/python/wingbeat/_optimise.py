@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 
 class Front(Found):
-    """The designs that no other beats in every objective; `vehicle` is that at the knee, None where none was found.
+    """The nondominated designs; `vehicle` is that at the knee, None if there is none.
 
     Examples
     --------
@@ -70,7 +70,7 @@ class Front(Found):
 
 
 class OwnOptimum(Found):
-    """An optimum by functions of the user's own: `value`, `parameters`, `outcome`, how the searches ended.
+    """An optimum by your own functions: `value`, `parameters`, and `outcome`, which states how the searches ended.
 
     Examples
     --------
@@ -129,14 +129,14 @@ def optimise(
     study : dict
         With a Vehicle: the tables of a study file, without a vehicle.
     values : dict, optional
-        Keys of the vehicle with other values: SI numbers, or texts with a unit.
+        Values that replace those of the vehicle: SI numbers, or texts with a unit.
     allow_extrapolation : bool, default False
         Designs outside the model's domain count.
     threads : int, default 0
         Number of threads at most; 0: one for each core.
     progress : bool or function, optional
-        For a front: True shows a bar (tqdm where it is installed), a function is called with designs done and
-        designs.
+        For a front: True shows a bar (tqdm if it is installed), a function is called with the designs done and their
+        total.
 
     Returns
     -------
@@ -146,24 +146,24 @@ def optimise(
     Raises
     ------
     InputError
-        For a study that cannot be used.
+        For an invalid study.
     TypeError
-        For a Vehicle without a study, and for a Vehicle beside a study file, which names its own.
+        For a Vehicle without a study, and for a Vehicle together with a study file, which names its vehicle.
     Exception
-        Whatever a function raises.
+        The exception of your function.
 
     Notes
     -----
     In a dict, what `minimise`, `maximise` or the `metric` of a constraint names may be a function of the result of a
     design, which flaps: `{"objective": {"minimise": f}, "constraint": [{"metric": g, "at_most": 2}]}`. It returns a
-    number [SI], or a number and its derivatives by whatever it uses, a dict by names of metrics and keys of parameters:
+    number [SI], or a number and its derivatives, a dict by names of metrics and keys of parameters:
 
         def cost(result):                                    # cost of a second of hovering, and what it follows from
             return 3 * result.power_electrical + 2 * result.current_peak, {"power_electrical": 3, "current_peak": 2}
 
-    With derivatives everywhere the search uses exact gradients, through the orbit; without, it is derivative-free
-    (COBYLA) and takes more designs. Such a search starts from the vehicle and from the best of `screen` designs (default
-    32 a parameter), `starts` times (default 4), on one thread. None or NaN: the design does not count.
+    If all functions return derivatives, the search uses exact gradients; otherwise it is derivative-free (COBYLA) and
+    needs more designs. Such a search starts from the vehicle and from the best of `screen` designs (default 32 for each
+    parameter), `starts` times (default 4), on one thread. Return None or NaN to exclude a design.
 
     Ctrl-C ends it.
 

@@ -51,7 +51,7 @@ def motor_curves(
     Parameters
     ----------
     motor : Vehicle or dict
-        A Vehicle; or a dict with the keys of its section [motor], all constants that a vehicle file needs.
+        A Vehicle; or a dict with the keys of a section [motor], with all constants that a vehicle file needs.
     voltage : float or str, optional
         Voltage at the terminals [V]; default: that of the vehicle's supply. Needed with a dict.
     speed : array_like, shape (n,), optional
@@ -61,20 +61,20 @@ def motor_curves(
     -------
     xarray.Dataset
         A data set over `speed`: current [A], torque [N m], electrical and mechanical power [W], and efficiency, their
-        ratio, absent (NaN) where the load drives the motor; as scalars `no_load_speed` [rad/s], `no_load_current`
-        [A], `stall_current` [A] and `stall_torque` [N m].
+        ratio, NaN if the load drives the motor; as scalars `no_load_speed` [rad/s], `no_load_current` [A],
+        `stall_current` [A] and `stall_torque` [N m].
 
     Raises
     ------
     InputError
-        For keys and values that cannot be used.
+        For invalid keys and values.
     TypeError
         For a dict without a voltage.
 
     Notes
     -----
-    Of several motors on one supply currents, torques and powers are the sums. Friction of the mechanism is no part of it;
-    the motor is as warm as its surroundings.
+    For several motors on one supply currents, torques and powers are sums. Friction of the mechanism is not included;
+    the motor is at ambient temperature.
 
     Examples
     --------
@@ -132,14 +132,14 @@ def coefficient_curves(
     -------
     xarray.Dataset
         A data set over `angle_of_attack`: lift C_L, drag C_D and the coefficient of the force normal to the chord C_N
-        [1]; of wings on hinges the centre of pressure behind the leading edge over the chord [1] as well.
+        [1]; for wings on hinges also the centre of pressure behind the leading edge over the chord [1].
 
     Raises
     ------
     InputError
         For an unknown set, and for values that cannot be used.
     TypeError
-        For what is neither a vehicle nor a set.
+        For an argument that is neither a vehicle nor a set.
 
     Examples
     --------
@@ -194,7 +194,7 @@ def kinematics(transmission: Vehicle | Mapping[str, Any], *, crank_angle: Any = 
     Raises
     ------
     InputError
-        For keys and values that cannot be used, and for a direct drive.
+        For invalid keys and values, and for a direct drive.
 
     Examples
     --------

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 
 class Quantity(float):
-    """A float with `unit` (UDUNITS) and `long_name`. Whatever is computed with it is a plain float.
+    """A float with `unit` (UDUNITS) and `long_name`. Arithmetic gives a plain float.
 
     Parameters
     ----------
@@ -18,7 +18,7 @@ class Quantity(float):
     Raises
     ------
     ValueError
-        For what is not a number.
+        For a value that is not a number.
 
     Examples
     --------

@@ -39,7 +39,7 @@ class Event(NamedTuple):
 
 
 class EnergyBalance(NamedTuple):
-    """Mean powers of a cycle [W]: the electrical input and where it goes.
+    """Mean powers of a cycle [W]: the electrical input and its shares.
 
     Examples
     --------
@@ -67,9 +67,9 @@ class EnergyBalance(NamedTuple):
 
 
 class RunResult(WithMetrics):
-    """What a vehicle does from rest. A vehicle that does not flap is a result like another.
+    """The steady flapping of a vehicle from rest. A vehicle that does not flap is a result like any other.
 
-    Metrics are attributes: `result.lift_mean`, None where there is none (no flapping, no mass given).
+    Metrics are attributes: `result.lift_mean`, None if absent (no flapping, no mass given).
 
     Examples
     --------
@@ -109,19 +109,19 @@ class RunResult(WithMetrics):
 
     @property
     def energy_balance(self) -> EnergyBalance | None:
-        """Where the electrical power goes; None unless flapping."""
+        """Where the electrical power goes; None if the vehicle does not flap."""
         if self.power_electrical is None:
             return None
         return EnergyBalance(**_core.energy_balance(self._metrics))
 
     @property
     def cycle(self) -> xarray.Dataset:
-        """One flapping cycle, over time [s], with units and long names; computed when first asked for.
+        """One flapping cycle, over time [s], with units and long names; computed at the first access.
 
         Raises
         ------
         ValueError
-            Unless the vehicle flaps.
+            If the vehicle does not flap.
         """
         if self._cycle is None:
             if self.status != "flapping":
@@ -138,8 +138,8 @@ class RunResult(WithMetrics):
     def gradient(self, metric: str, keys: str | list[str] | tuple[str, ...]) -> float | npt.NDArray[np.float64]:
         """Exact derivatives of a metric by numeric keys of the vehicle, SI per SI, in the order of `keys`.
 
-        The voltage is held; where the result was asked for by its frequency or lift, that is. NaN unless flapping, and
-        for metrics without derivatives (floquet_multiplier_max).
+        The voltage is held, or the frequency or lift that you solved for. NaN if the vehicle does not flap, and for
+        metrics without derivatives (floquet_multiplier_max).
 
         Parameters
         ----------
@@ -217,7 +217,7 @@ def _waveform(columns: Sequence[Any]) -> xarray.Dataset:
 
 
 class StartUp(WithMetrics):
-    """A start-up in time. Metrics of the cycle it settles in are attributes, None where there is none.
+    """A start-up in time. Metrics of the final cycle are attributes, None if absent.
 
     Examples
     --------
@@ -286,9 +286,9 @@ def simulate(
     condition : str, default 'air'
         "air", "vacuum" or "wingless".
     tolerance : float, default 1e-06
-        Wanted relative accuracy of the metrics of steady flapping, 1e-11 to 1e-2.
+        Requested relative accuracy of the metrics of steady flapping, 1e-11 to 1e-2.
     max_time : float or str, default 0.0
-        Time after which the simulation gives up [s]; 0: chosen from the vehicle's own time scales.
+        Time limit of the simulation [s]; 0: chosen from the time scales of the vehicle.
     crank_angle : float or str, default 0.0
         Crank angle at the start [rad].
     crank_speed : float or str, default 0.0
@@ -301,12 +301,12 @@ def simulate(
     Returns
     -------
     StartUp
-        Whether it ends in flapping or not.
+        The start-up, whether it ends in flapping or not.
 
     Raises
     ------
     InputError
-        For options that cannot be used.
+        For invalid options.
 
     Examples
     --------

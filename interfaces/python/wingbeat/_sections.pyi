@@ -30,7 +30,7 @@ class VehicleSection(Section):
 class SupplySection(Section):
     @property
     def type(self) -> str | None:
-        """what feeds the motor terminals.
+        """source at the motor terminals.
         Range: constant, sine, pwm, battery or battery-sine. Default: required.
         """
     @property
@@ -47,7 +47,7 @@ class SupplySection(Section):
         """
     @property
     def offset(self) -> Quantity | None:
-        """V_0, constant part of the voltage beside the sine.
+        """V_0, constant part of the voltage, added to the sine.
         [V] Range: any. Default: 0 V.
         Only with supply.type = sine or battery-sine.
         """
@@ -73,7 +73,7 @@ class SupplySection(Section):
         """
     @property
     def throttle(self) -> str | None:
-        """what the speed control does in flight: fixed holds the duty (or a bridge's amplitude), hover sets it so that the mean lift carries the weight.
+        """speed control in flight: fixed holds the duty (or a bridge's amplitude), hover sets it so that the mean lift carries the weight.
         Range: fixed or hover. Default: fixed.
         Only with supply.type = battery or battery-sine.
         """
@@ -262,7 +262,7 @@ class MotorSection(Section):
 class ElectronicsSection(Section):
     @property
     def efficiency(self) -> Quantity | None:
-        """eta_esc of a brushless motor's electronics, what the motor takes over what the supply gives; given, no current flows back into the supply.
+        """eta_esc of a brushless motor's electronics: power into the motor over power from the supply; given, no current flows back into the supply.
         Number. Range: > 0, <= 1. Default: none: no electronics.
         """
     @property
@@ -322,7 +322,7 @@ class PiezoSection(Section):
         """
     @property
     def recovered_share(self) -> Quantity | None:
-        """share of the energy that the capacitance gives back in a cycle which the electronics recover.
+        """share of the energy returned by the capacitance in a cycle that the electronics recover.
         Number. Range: 0 to 1. Default: 1.
         Only with piezo.force_per_volt.
         """
@@ -525,7 +525,7 @@ class SpringSection(Section):
 class WingTorsionSection(Section):
     @property
     def stiffness(self) -> Quantity | None:
-        """k_tau, torsion of one wing along its span: twist of the tip against the root, linear between; given, it is a degree of freedom, beside the pitch hinge or in its place.
+        """k_tau, torsion of one wing along its span: twist of the tip against the root, linear between; given, twist is a degree of freedom, in addition to the pitch hinge or instead of it.
         [N m/rad] Range: > 0. Default: none: no twist.
         """
     @property
@@ -790,7 +790,7 @@ class AerodynamicsSection(Section):
         """
     @property
     def added_mass(self) -> bool:
-        """air accelerated with the wings: J_a = pi/4 rho S_22 by strip theory, of wings on a pitch hinge the air that their pitching moves, too; takes no mean power.
+        """air accelerated with the wings: J_a = pi/4 rho S_22 by strip theory; for wings on a pitch hinge also the air moved by pitching; without mean power.
         Range: true or false. Default: false.
         """
     @property
@@ -810,7 +810,7 @@ class AerodynamicsSection(Section):
         """
     @property
     def lifting_span(self) -> Quantity:
-        """B, part of the distance from hinge to tip that lifts; beyond it the wings have the drag C_D(0) alone.
+        """B, part of the distance from hinge to tip that lifts; beyond it the wings have only the drag C_D(0).
         Number. Range: > 0, <= 1. Default: 1.
         """
     @property

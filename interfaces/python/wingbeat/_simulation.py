@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
 
 class SimulationState(NamedTuple):
-    """Everything that moves, and what commands the voltage: what `Simulation.save` returns and `restore` takes.
+    """All states and the commanded voltage: the result of `Simulation.save`, for `restore`.
 
-    Can be compared, copied and pickled; with a function that commands, where that can be.
+    You can compare, copy and pickle it; with a commanding function, if that can be pickled.
 
     Examples
     --------
@@ -52,11 +52,11 @@ class Simulation:
     vehicle : Vehicle
         The vehicle, at rest at time 0 unless another state is given.
     voltage : float, str, function or pair of arrays, optional
-        What commands the voltage [V]: see the attribute `voltage`. Without it the supply drives the motor.
+        The commanded voltage [V]: see the attribute `voltage`. Without it the supply drives the motor.
     condition : str, default 'air'
         "air", "vacuum" or "wingless".
     tolerance : float, default 1e-08
-        Admissible relative error of an integration step, 1e-12 to 1e-2.
+        Largest relative error of an integration step, 1e-12 to 1e-2.
     angle : float or str, default 0.0
         Crank angle at the start, or stroke angle of a direct drive [rad].
     speed : float or str, default 0.0
@@ -71,13 +71,13 @@ class Simulation:
     Raises
     ------
     InputError
-        For options that cannot be used.
+        For invalid options.
 
     Notes
     -----
-    Sticking, jamming, stops of hinges and the switching of a pwm supply are part of it. The motor is as warm as its
-    surroundings. A simulation has one user at a time: another thread, or a commanding function, must not step it
-    meanwhile. `copy.copy` makes one that goes its own way; it can be pickled.
+    Sticking, jamming, stops of hinges and the switching of a pwm supply are included. The motor is at ambient
+    temperature. Use a simulation in one thread at a time; a commanding function must not step it. `copy.copy` makes an
+    independent one; you can pickle it.
 
     Examples
     --------
@@ -136,7 +136,7 @@ class Simulation:
 
     @property
     def now(self) -> dict[str, Quantity | None]:
-        """Everything that acts, by the names of `RunResult.cycle`; None where the vehicle does not have it."""
+        """All present quantities, by the names of `RunResult.cycle`; None if absent."""
         return {
             row.name: None if value != value else Quantity(value, row.unit, row.long_name)
             for row, value in zip(waveforms.values(), self._simulation.acting())
@@ -149,16 +149,16 @@ class Simulation:
 
     @property
     def ended(self) -> bool:
-        """The mechanism has jammed: time does not go on."""
+        """The mechanism has jammed, and time stops."""
         return self._simulation.ended()
 
     @property
     def voltage(self) -> Any:
-        """What drives the motor in place of the supply [V], through the same resistance; None: the supply does.
+        """The voltage that replaces the supply [V], through the same resistance; None: the supply drives the motor.
 
-        A number or a text with a unit holds until something else is set. A function of time [s] is asked at any moments
-        of a step and should be smooth within it. A pair of arrays, times [s] and voltages [V], is straight lines between
-        samples, of which the ends go on as constants; two samples at one time are a jump.
+        A number or a text with a unit holds until you set another voltage. A function of time [s] is called at any time
+        within a step and should be smooth there. A pair of arrays, times [s] and voltages [V], is interpolated
+        linearly, with constant values beyond its ends; two samples at one time are a jump.
         """
         return self._voltage
 
@@ -182,16 +182,15 @@ class Simulation:
             self._voltage = held
 
     def step_to(self, time: float | str, *, until: str | None = None) -> list[Event]:
-        """Goes on to a time [s] and returns what has happened on the way.
+        """Steps to a time [s] and returns the events on the way.
 
         Parameters
         ----------
         time : float or str
             Time to step to [s]; not in the past.
         until : str, optional
-            Stop behind the first event of this kind: "revolution" (the crank angle passes a multiple of 2 pi
-            forwards), "force-sign-change" (of the rod), "standstill", "breakaway", "supply-switch", "stop-impact",
-            "jam".
+            Stop after the first event of this kind: "revolution" (the crank angle passes a multiple of 2 pi forwards),
+            "force-sign-change" (of the rod), "standstill", "breakaway", "supply-switch", "stop-impact", "jam".
 
         Returns
         -------
@@ -205,8 +204,8 @@ class Simulation:
 
         Notes
         -----
-        It ends early where the mechanism jams. Other Python threads run meanwhile. What a commanding function raises,
-        and Ctrl-C, leave the simulation where the call began.
+        The step ends early if the mechanism jams. Other Python threads run during the call. After an exception in a
+        commanding function, or Ctrl-C, the simulation has its state from before the call.
 
         Examples
         --------
@@ -219,14 +218,14 @@ class Simulation:
         return [Event(*event) for event in self._simulation.step_to(end, kind)]
 
     def step(self, duration: float | str, *, until: str | None = None) -> list[Event]:
-        """Goes on for a time [s] and returns what has happened on the way, as `step_to` does.
+        """Steps for a time [s] and returns the events on the way, like `step_to`.
 
         Parameters
         ----------
         duration : float or str
             Time to step [s]; not negative.
         until : str, optional
-            Stop behind the first event of this kind; `step_to` lists them.
+            Stop after the first event of this kind; `step_to` lists them.
 
         Returns
         -------
@@ -251,23 +250,23 @@ class Simulation:
         return self.step_to(self.time + span, until=until)
 
     def record(self, times: Any) -> xarray.Dataset:
-        """Steps to each of these moments and returns everything that acts there over time.
+        """Steps to each of these times and returns all quantities over time.
 
         Parameters
         ----------
         times : array_like, shape (n,)
-            Times [s], SI numbers or texts with a unit; they must not fall.
+            Times [s], SI numbers or texts with a unit; they must not decrease.
 
         Returns
         -------
         xarray.Dataset
-            The variables of `RunResult.cycle` over `time`, with units and long names, NaN behind a jam; over the
+            The variables of `RunResult.cycle` over `time`, with units and long names, NaN after a jam; over the
             dimension `event`: `event`, `event_time` [s] and `event_crank_angle` [rad].
 
         Raises
         ------
         InputError
-            For times in the past, or that fall.
+            For times in the past, or decreasing times.
 
         Examples
         --------
@@ -286,12 +285,12 @@ class Simulation:
         )
 
     def save(self) -> SimulationState:
-        """Its state, from which the same steps give the same bits, in this and in other simulations of the vehicle.
+        """Its state. The same steps from it are bit-identical, in this and other simulations of the vehicle.
 
         Returns
         -------
         SimulationState
-            What `restore` takes; it can be pickled.
+            The state for `restore`; you can pickle it.
 
         Examples
         --------
@@ -305,19 +304,19 @@ class Simulation:
         return SimulationState(self._simulation.save(), self._voltage)
 
     def restore(self, state: SimulationState) -> None:
-        """Goes back, or on, to a saved state.
+        """Returns to a saved state.
 
         Parameters
         ----------
         state : SimulationState
-            What `save` returned.
+            The result of `save`.
 
         Raises
         ------
         InputError
             For a state of another kind of vehicle.
         TypeError
-            For what is not a state.
+            For an argument that is not a state.
 
         Examples
         --------

@@ -68,44 +68,43 @@ def solve(
     threads: int = 0,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> RunResult | Ensemble:
-    """What a vehicle does from rest: its steady flapping with all metrics, or the status with the evidence.
+    """The steady flapping of a vehicle from rest with all metrics, or the status with the evidence.
 
     Parameters
     ----------
     design : Vehicle or dict
         A Vehicle; or a dict or DataFrame of columns with a design in each row: see `wingbeat.solve_columns`.
     vehicle : Vehicle, optional
-        Of columns: the vehicle with all keys that are no column.
+        Of columns: the vehicle with all keys that are not columns.
     voltage : float or str, optional
-        Of one vehicle: voltage of the supply [V], in place of the vehicle's own.
+        Of one vehicle: voltage of the supply [V], instead of the vehicle's.
     frequency : float or str, optional
-        Flapping frequency [Hz], in place of a voltage: the voltage that yields it is found. A direct drive has the
-        frequency of its supply.
+        Flapping frequency [Hz], instead of a voltage: the voltage for it is found. For a direct drive this is the
+        frequency of the supply.
     lift : float or str, optional
-        Mean lift [N], in place of a voltage: the voltage (with pwm the duty) that yields it is found.
+        Mean lift [N], instead of a voltage: the voltage (with pwm the duty) for it is found.
     lift_to_weight : float, optional
         Lift over weight [1], likewise; 1: hover.
     power : float or str, optional
         Mean electrical power [W], likewise.
     angle_of_attack : float or str, optional
-        Of one vehicle: angle of attack at mid-stroke [rad]; the aerodynamics.pitch_coefficient that leads to it is
-        found.
+        Of one vehicle: angle of attack at mid-stroke [rad]; the aerodynamics.pitch_coefficient for it is found.
     condition : str, default 'air'
         "air", "vacuum" or "wingless".
     method : str, default 'orbit'
         Of one vehicle: "orbit", or "transient" to simulate from rest.
     tolerance : float, default 1e-06
-        Wanted relative accuracy of every metric, 1e-12 to 1e-2.
+        Requested relative accuracy of every metric, 1e-12 to 1e-2.
     allow_extrapolation : bool, default False
         A search for a frequency, a lift or a power may leave the model's domain.
     endurance : bool, default False
-        Of one vehicle on a battery: compute also how long it hovers and flaps, which costs a flight.
+        Of one vehicle on a battery: also compute how long it hovers and flaps, which takes a whole flight.
     metrics : list of str, optional
-        Of columns: names of the metrics to compute; fewer cost less.
+        Of columns: names of the metrics to compute; fewer take less time.
     threads : int, default 0
         Of columns: number of threads at most; 0: one for each core.
     progress : bool or function, optional
-        Of columns: True shows a bar, a function is called with designs done and designs.
+        Of columns: True shows a bar, a function is called with the designs done and their total.
 
     Returns
     -------
@@ -117,7 +116,7 @@ def solve(
     InputError
         For options that cannot be used, and for more than one of voltage, frequency, lift, lift_to_weight and power.
     TypeError
-        For what is neither a vehicle nor columns, and for an option that only the other one has.
+        For an argument that is neither a vehicle nor columns, and for an option of the other kind.
 
     Examples
     --------

@@ -29,10 +29,10 @@ if TYPE_CHECKING:
 
 
 class StudyResult(Mapping[str, Any]):
-    """What a study found: a mapping with the keys of `--json` of the program's command of that name, in SI units.
+    """The result of a study: a mapping with the keys of `--json` of the corresponding command, in SI units.
 
-    The keys are attributes as well, `result.status` for `result["status"]`. `print(result)` is the program's readable
-    report, which is what Python and notebooks show of it.
+    The keys are attributes as well, `result.status` for `result["status"]`. `print(result)` gives the program's report,
+    which Python and notebooks also show.
 
     Examples
     --------
@@ -216,7 +216,7 @@ def endurance(vehicle: Vehicle, *, hover: bool = False, allow_extrapolation: boo
     hover : bool, default False
         Fly at the throttle that just carries the weight, as with `supply.throttle = "hover"`.
     allow_extrapolation : bool, default False
-        Flight outside the model's domain may hover.
+        Hover outside the model's domain counts.
 
     Returns
     -------
@@ -253,23 +253,23 @@ def identify_motor(
     sheet : path
         The path of the data sheet, or the name of a shipped one.
     frequency : float or str, optional
-        The flapping frequency that you plan [Hz], for the remark about the inductance.
+        The planned flapping frequency [Hz], for the remark about the inductance.
     assume_steel_cylinder : bool, default False
-        Where the sheet does not state the inertia, take that of a steel cylinder of the rotor's size.
+        If the sheet does not state the inertia, use that of a steel cylinder of the rotor's size.
     assume_typical_damping : bool, default False
-        Where the sheet does not determine the viscous loss, take that of a small coreless motor.
+        If the sheet does not determine the viscous loss, use that of a small coreless motor.
     shaft : str, default 'output'
         "output" or "motor": the shaft that the constants of `motor` refer to.
 
     Returns
     -------
     Identification
-        A sheet that does not determine the motor gives a result as well, which names what is missing.
+        The constants; if the sheet does not determine the motor, the result names the missing data.
 
     Raises
     ------
     InputError
-        For a sheet that cannot be read or used.
+        For an invalid sheet.
 
     Examples
     --------
@@ -330,13 +330,13 @@ def tolerance(
     study : dict
         With a Vehicle: the tables of a study file, without a vehicle.
     values : dict, optional
-        Keys of the vehicle with other values: SI numbers, or texts with a unit.
+        Values that replace those of the vehicle: SI numbers, or texts with a unit.
     allow_extrapolation : bool, default False
         Samples outside the model's domain count and may hover.
     threads : int, default 0
         Number of threads at most; 0: one for each core.
     progress : bool or function, optional
-        True shows a bar (tqdm where it is installed), a function is called with designs done and designs.
+        True shows a bar (tqdm if it is installed), a function is called with the designs done and their total.
 
     Returns
     -------
@@ -346,9 +346,9 @@ def tolerance(
     Raises
     ------
     InputError
-        For a study that cannot be used.
+        For an invalid study.
     TypeError
-        For a Vehicle without a study, and for a Vehicle beside a study file, which names its own.
+        For a Vehicle without a study, and for a Vehicle together with a study file, which names its vehicle.
 
     Examples
     --------

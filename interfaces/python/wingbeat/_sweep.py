@@ -58,11 +58,11 @@ def sweep(
         values: SI numbers, texts with units, or names. The last one varies fastest.
     output : path, optional
         A file (.nc) that keeps the data set, as `wingbeat sweep -o` writes it. After an interruption the same call
-        continues from what is there. Without it nothing is left on the disk.
+        continues from this file. Without `output` no file remains.
     frequency : float or str, optional
         Flapping frequency of all designs [Hz]; the voltage of each is found.
     lift : float or str, optional
-        Mean lift of all designs [N]; the lowest voltage that yields it is found.
+        Mean lift of all designs [N]; the lowest voltage for it is found.
     lift_to_weight : float, optional
         Lift over weight of all designs [1], likewise; 1: hover.
     power : float or str, optional
@@ -70,7 +70,7 @@ def sweep(
     allow_extrapolation : bool, default False
         A search for a lift may leave the model's domain.
     tolerance : float, default 1e-06
-        Wanted relative accuracy of every metric, 1e-12 to 1e-2.
+        Requested relative accuracy of every metric, 1e-12 to 1e-2.
     metrics : list of str, optional
         Names of the metrics to compute; default: all that the vehicle has but hover and endurance.
     title : str, default ''
@@ -78,9 +78,9 @@ def sweep(
     threads : int, default 0
         Number of threads at most; 0: one for each core.
     force : bool, default False
-        Replace a file that is not of this sweep.
+        Replace a file of another sweep.
     progress : bool or function, optional
-        True shows a bar (tqdm where it is installed), a function is called with designs done and designs.
+        True shows a bar (tqdm if it is installed), a function is called with the designs done and their total.
 
     Returns
     -------
@@ -92,11 +92,11 @@ def sweep(
     Raises
     ------
     InputError
-        For axes and options that cannot be used, and for a file that is not of this sweep.
+        For axes and options that are invalid, and for a file of another sweep.
 
     Notes
     -----
-    Other Python threads run meanwhile; Ctrl-C ends it.
+    Other Python threads run during the call; Ctrl-C ends it.
 
     Examples
     --------
@@ -138,7 +138,7 @@ def _unit(key: str) -> str:
 
 
 def open_dataset(file: str | os.PathLike[str]) -> SweepData:
-    """A data set that the program or `sweep` has written, loaded; attributes as those of what `sweep` returns.
+    """Loads a data set written by the program or by `sweep`, with the attributes of the result of `sweep`.
 
     Parameters
     ----------
@@ -153,7 +153,7 @@ def open_dataset(file: str | os.PathLike[str]) -> SweepData:
     Raises
     ------
     FileNotFoundError
-        Where there is no such file.
+        If the file does not exist.
     InputError
         For a file that is not a NetCDF file.
 

@@ -55,8 +55,8 @@ class Trim(StudyResult):
 
     @property
     def drives(self) -> npt.NDArray[np.float64]:
-        """The drives at the begin of the cycle that they settle to, as `FlightSimulation.start` takes them; without a
-        row where the vehicle does not flap."""
+        """The drives at the beginning of their settled cycle, in the form for `FlightSimulation.start`; without a row
+        if the vehicle does not flap."""
         return np.array(self._start["drives"])
 
 
@@ -86,7 +86,7 @@ class FlightStability(StudyResult):
         Raises
         ------
         ValueError
-            Where the vehicle is not in trim.
+            If the vehicle is not in trim.
         """
         inputs = [*self["controls"], *WIND_INPUTS]
         n, m = len(self["states"]), len(inputs)
@@ -117,12 +117,13 @@ class FlightStability(StudyResult):
 
     @property
     def averaged(self) -> npt.NDArray[np.complex128]:
-        """Of each of `modes` by the averaged model [1/s], NaN where none; of a pair that of positive imaginary part."""
+        """The exponent of each of `modes` by the averaged model [1/s], NaN if there is none; of a pair that with
+        positive imaginary part."""
         return self._eigenvalues("averaged")
 
     @property
     def floquet(self) -> npt.NDArray[np.complex128]:
-        """Of each of `modes` by Floquet theory of the periodic flight [1/s]; NaN where none was found."""
+        """The exponent of each of `modes` by Floquet theory [1/s]; NaN if there is none."""
         return self._eigenvalues("floquet")
 
     def _eigenvalues(self, kind: str) -> npt.NDArray[np.complex128]:
@@ -141,9 +142,9 @@ class FlightStability(StudyResult):
         Raises
         ------
         ImportError
-            Where `control` is not installed.
+            If `control` is not installed.
         ValueError
-            Where the vehicle is not in trim.
+            If the vehicle is not in trim.
 
         Examples
         --------
@@ -164,9 +165,9 @@ class FlightStability(StudyResult):
         Raises
         ------
         ImportError
-            Where SciPy is not installed.
+            If SciPy is not installed.
         ValueError
-            Where the vehicle is not in trim.
+            If the vehicle is not in trim.
 
         Examples
         --------
@@ -191,11 +192,11 @@ def trim(
     vehicle : Vehicle
         A vehicle with a body.
     speed : float or str, default 0.0
-        Horizontal, against the air [m/s].
+        Horizontal speed relative to the air [m/s].
     climb : float or str, default 0.0
-        Upwards [m/s].
+        Upward speed [m/s].
     turn_rate : float or str, default 0.0
-        Of the heading, to the right [rad/s].
+        Rate of the heading, to the right [rad/s].
 
     Returns
     -------
@@ -205,7 +206,7 @@ def trim(
     Raises
     ------
     InputError
-        For a vehicle without a body, or one whose flight is not modelled.
+        For a vehicle without a body or with parts that flight does not model.
 
     Examples
     --------
@@ -232,23 +233,23 @@ def flight_stability(
     vehicle : Vehicle
         A vehicle with a body.
     speed : float or str, default 0.0
-        Horizontal, against the air [m/s].
+        Horizontal speed relative to the air [m/s].
     climb : float or str, default 0.0
-        Upwards [m/s].
+        Upward speed [m/s].
     turn_rate : float or str, default 0.0
-        Of the heading, to the right [rad/s].
+        Rate of the heading, to the right [rad/s].
     sensitivity : bool, default False
-        With the change of the least stable mode by every parameter, which takes most of the time.
+        Also compute the sensitivity of the least stable mode to every parameter, which takes most of the time.
 
     Returns
     -------
     FlightStability
-        The modes; without any where the vehicle is not in trim.
+        The modes; none if the vehicle is not in trim.
 
     Raises
     ------
     InputError
-        For a vehicle without a body, or one whose flight is not modelled.
+        For a vehicle without a body or with parts that flight does not model.
 
     Examples
     --------
@@ -273,22 +274,22 @@ def flight_tolerance(
     threads: int = 0,
     progress: bool | Callable[[int, int], object] | None = None,
 ) -> StudyResult:
-    """What uncertain parameters do to a vehicle's steady flight and its modes: `wingbeat tolerance --flight`.
+    """Effect of uncertain parameters on a vehicle's steady flight and its modes: `wingbeat tolerance --flight`.
 
     Parameters
     ----------
     vehicle : Vehicle, path or dict
-        As `wingbeat.tolerance` takes it; the vehicle has a body.
+        As for `wingbeat.tolerance`; the vehicle has a body.
     study : dict
         With a Vehicle: the tables of a study file, without a vehicle.
     speed : float or str, default 0.0
-        Horizontal, against the air [m/s].
+        Horizontal speed relative to the air [m/s].
     values : dict, optional
-        Keys of the vehicle with other values: SI numbers, or texts with a unit.
+        Values that replace those of the vehicle: SI numbers, or texts with a unit.
     threads : int, default 0
         Number of threads at most; 0: one for each core.
     progress : bool or function, optional
-        True shows a bar (tqdm where it is installed), a function is called with vehicles done and vehicles.
+        True shows a bar (tqdm if it is installed), a function is called with vehicles done and vehicles.
 
     Returns
     -------
@@ -298,9 +299,9 @@ def flight_tolerance(
     Raises
     ------
     InputError
-        For a study that cannot be used, and for a vehicle without a body.
+        For an invalid study, and for a vehicle without a body.
     TypeError
-        For a Vehicle without a study, and for a Vehicle beside a study file, which names its own.
+        For a Vehicle without a study, and for a Vehicle together with a study file, which names its vehicle.
 
     Examples
     --------

@@ -70,9 +70,9 @@ class Vehicle(VehicleMethods, Sections):
     """A vehicle, by the keys of vehicle files: `Vehicle({"motor": {"inertia": "1.5e-7 kg m2", ...}, ...})`.
 
     Values are SI numbers or texts with a unit ("5 mm"); sections may be nested tables or dotted keys. Keys are
-    attributes, `vehicle.motor.inertia`, and items, `vehicle["motor.inertia"]`; `wingbeat.parameters` describes them.
-    A vehicle never changes: `replace` makes another one. Equal vehicles have equal values; they can be pickled, and
-    be keys of a dict. `to_toml` writes one as a vehicle file that reads back to the bit.
+    attributes, `vehicle.motor.inertia`, and items, `vehicle["motor.inertia"]`; `wingbeat.parameters` describes them. A
+    vehicle never changes: `replace` makes another one. Equal vehicles have equal values; they can be pickled, and be
+    keys of a dict. `to_toml` writes a vehicle file that reads back exactly.
 
     Parameters
     ----------
@@ -82,9 +82,9 @@ class Vehicle(VehicleMethods, Sections):
     Raises
     ------
     InputError
-        For keys and values that cannot be used, with all that is wrong.
+        For invalid keys and values, with all errors.
     TypeError
-        Where `values` is not a dict.
+        If `values` is not a dict.
 
     Examples
     --------
@@ -117,7 +117,7 @@ class Vehicle(VehicleMethods, Sections):
 
     @classmethod
     def from_toml(cls, toml: str, name: str = "vehicle") -> Vehicle:
-        """The vehicle in the text of a vehicle file, in which tables stand in place.
+        """The vehicle in the text of a vehicle file, which contains all tables.
 
         Parameters
         ----------
@@ -134,7 +134,7 @@ class Vehicle(VehicleMethods, Sections):
         Raises
         ------
         InputError
-            With line and column of all that is wrong.
+            With line and column of all errors.
 
         Examples
         --------
@@ -146,7 +146,7 @@ class Vehicle(VehicleMethods, Sections):
         return cls._of(_core.parse(text("toml", toml), text("name", name)))
 
     def to_toml(self) -> str:
-        """The vehicle file, complete in itself, that reads back to the equal vehicle.
+        """The complete vehicle file, which reads back as an equal vehicle.
 
         Returns
         -------
@@ -165,7 +165,7 @@ class Vehicle(VehicleMethods, Sections):
         return self._toml
 
     def to_dict(self) -> dict[str, Any]:
-        """The sections as nested dicts, with numbers as texts with units: what `Vehicle` takes.
+        """The sections as nested dicts for `Vehicle`, with numbers as texts with units.
 
         Returns
         -------
@@ -190,12 +190,12 @@ class Vehicle(VehicleMethods, Sections):
         Returns
         -------
         Vehicle
-            Another one; this one does not change.
+            A new vehicle; this one does not change.
 
         Raises
         ------
         InputError
-            For keys and values that cannot be used, with all that is wrong.
+            For invalid keys and values, with all errors.
 
         Examples
         --------
@@ -230,7 +230,7 @@ class Vehicle(VehicleMethods, Sections):
         return found
 
     def keys(self) -> list[str]:
-        """The keys that `to_toml` states; alternatives to them have values, too.
+        """The keys that `to_toml` writes; alternatives to them also have values.
 
         Returns
         -------
@@ -262,7 +262,7 @@ class Vehicle(VehicleMethods, Sections):
 
     @property
     def name(self) -> str:
-        """The name, "" where it has none."""
+        """The name, or ""."""
         return str(self._design.value("vehicle.name") or "")
 
     def __eq__(self, other: object) -> bool:
@@ -286,7 +286,7 @@ class Vehicle(VehicleMethods, Sections):
         return f"<wingbeat.Vehicle {self.name!r}>"
 
     def drawing(self, stroke_amplitude: float | str = 1.0) -> str:
-        """Its mechanism as SVG, to be shown in a page; "" where gnuplot, which draws it, is not installed.
+        """Its mechanism as SVG; "" if gnuplot is not installed.
 
         Parameters
         ----------
@@ -345,9 +345,9 @@ def _restored(toml: str) -> Vehicle:
 
 
 def read(file: str | os.PathLike[str] | IO[str]) -> Vehicle:
-    """The vehicle in a vehicle file (TOML), by its path, by the name of one that comes with the package, or open.
+    """Reads a vehicle file (TOML), by its path, by the name of one that comes with the package, or as an open file.
 
-    CSV files that it names are sought beside it; in an open file, tables stand in place.
+    CSV files that it names are sought in its folder; an open file must contain all tables.
 
     Parameters
     ----------
@@ -363,9 +363,9 @@ def read(file: str | os.PathLike[str] | IO[str]) -> Vehicle:
     Raises
     ------
     InputError
-        With file, line and column of all that is wrong; for a name that is neither a file nor a shipped vehicle.
+        With file, line and column of all errors; for a name that is neither a file nor a shipped vehicle.
     TypeError
-        For what is neither a path nor an open file.
+        For an argument that is neither a path nor an open file.
 
     Examples
     --------
@@ -384,7 +384,7 @@ def read(file: str | os.PathLike[str] | IO[str]) -> Vehicle:
 
 
 def shipped(kind: str = "vehicle") -> list[str]:
-    """The names of files that come with the package: what `read` and the studies find without a path.
+    """The names of files that come with the package, for `read` and the studies.
 
     Parameters
     ----------

@@ -6,23 +6,23 @@
     observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
     many = wingbeat.gym.make_vec("track", "flight-x-wing", 64)    # 64 flights, stepped on all cores in one call
 
-Gymnasium is not needed. Where it is installed, environments are `gymnasium.Env` with its spaces, and
+Gymnasium is optional. If it is installed, environments are `gymnasium.Env` with its spaces, and
 `gymnasium.make("wingbeat.gym:wingbeat/Hover-v0")` and `wingbeat/Track-v0` make them.
 
-Actions: a number from -1 to 1 for each control of the vehicle, in the order of `controls`. 0 is its setting in trim,
--1 and 1 are the ends of its range, with straight lines between.
+Actions: a number from -1 to 1 for each control of the vehicle, in the order of `controls`. 0 is its setting in trim, -1
+and 1 are the ends of its range, with linear interpolation.
 
-Observations, 15 numbers and the last action, cut off at -10 and 10, all of body axes (x forward, y right, z down):
-way to the target / 1 m; its velocity against the body / 2 m/s; the directions down and north; rates / (10 rad/s). They
-are those of the moment, with what the wingbeat does to the body.
+Observations: 15 numbers and the last action, clipped to -10 and 10, all in body axes (x forward, y right, z down):
+vector to the target / 1 m; velocity of the target relative to the body / 2 m/s; the directions down and north; rates /
+(10 rad/s). They are instantaneous values, which include the motion of the body within a wingbeat.
 
 Rewards of a step, at most 1, with the distance d to the target, the speed s against it, the tilt of the body, the size
 w of the rates and the change c of each action:
 
     0.5 exp(-d / 0.25 m) + 0.2 exp(-s / (1 m/s)) + 0.2 max(0, cos(tilt)) + 0.1 exp(-w / (10 rad/s)) - 0.05 mean(c^2)
 
-An episode terminates, with a reward of 0 for the last step, more than 1 m from the target, at a tilt of the body of
-more than 80 deg, and where a mechanism jams. It is truncated after `duration`.
+An episode terminates, with a reward of 0 for the last step, more than 1 m from the target, at a tilt of more than 80
+deg, or if a mechanism jams. It is truncated after `duration`.
 """
 
 from __future__ import annotations
@@ -70,21 +70,21 @@ class FlightEnv(EnvBase):  # type: ignore[misc]
         Parameters
         ----------
         seed : int, optional
-            Of the random numbers of this and later episodes; without it they go on.
+            Seed of the random numbers of this and later episodes; default: the sequence continues.
         options : dict, optional
-            "disturbance" in place of that of the environment, or "body", a BodyState to start from.
+            "disturbance" instead of that of the environment, or "body", a BodyState to start from.
 
         Returns
         -------
         observation : numpy.ndarray
-            What the environment sees, in its observation space.
+            The observation, in the observation space.
         info : dict
             Time [s], position and target [m], distance [m], controls [SI], power [W], wind [m/s], and why it ended.
 
         Raises
         ------
         InputError
-            For options that are not known.
+            For unknown options.
 
         Examples
         --------
@@ -98,17 +98,17 @@ class FlightEnv(EnvBase):  # type: ignore[misc]
         return self._flights.observe()[0], self._info(0)
 
     def step(self, action: Any) -> tuple[np.ndarray[Any, Any], float, bool, bool, dict[str, Any]]:
-        """Flies one step of control under an action.
+        """Flies one control step under an action.
 
         Parameters
         ----------
         action : array_like
-            A number from -1 to 1 for each control; what lies beyond is cut off.
+            A number from -1 to 1 for each control; values beyond are clipped.
 
         Returns
         -------
         observation : numpy.ndarray
-            What the environment sees, in its observation space.
+            The observation, in the observation space.
         reward : float
             Of this step, at most 1.
         terminated : bool
@@ -116,7 +116,7 @@ class FlightEnv(EnvBase):  # type: ignore[misc]
         truncated : bool
             The time of the episode is over.
         info : dict
-            As of `reset`.
+            As from `reset`.
 
         Raises
         ------
@@ -163,21 +163,21 @@ class HoverEnv(FlightEnv):
     duration : float or str, default 10.0
         Time after which an episode is truncated [s].
     disturbance : float, default 1.0
-        Largest deviation of the start, evenly distributed: for 1, 0.1 m, 0.3 m/s, 0.2 rad of roll and pitch, 0.5 rad of
-        heading and 1 rad/s on each axis.
+        Largest deviation of the start, uniformly distributed: for 1, 0.1 m, 0.3 m/s, 0.2 rad of roll and pitch, 0.5 rad
+        of heading and 1 rad/s on each axis.
     wind : array_like, shape (3,), default (0.0, 0.0, 0.0)
         Steady wind in earth axes [m/s].
     gusts : float or str, default 0.0
         Standard deviation of gusts on each axis [m/s], with a correlation time of 0.5 s, constant over a step.
     tolerance : float, default 0.0001
-        Admissible relative error of an integration step, 1e-12 to 1e-2.
+        Largest relative error of an integration step, 1e-12 to 1e-2.
     render_mode : str, optional
         None: nothing is drawn.
 
     Raises
     ------
     InputError
-        For a vehicle that does not hover, and for options that cannot be used.
+        For a vehicle that does not hover, and for invalid options.
 
     Examples
     --------
@@ -207,20 +207,20 @@ class TrackEnv(FlightEnv):
     duration : float or str, default 10.0
         Time after which an episode is truncated [s].
     disturbance : float, default 1.0
-        Largest deviation of the start, as of HoverEnv.
+        Largest deviation of the start, as for HoverEnv.
     wind : array_like, shape (3,), default (0.0, 0.0, 0.0)
         Steady wind in earth axes [m/s].
     gusts : float or str, default 0.0
         Standard deviation of gusts on each axis [m/s], with a correlation time of 0.5 s, constant over a step.
     tolerance : float, default 0.0001
-        Admissible relative error of an integration step, 1e-12 to 1e-2.
+        Largest relative error of an integration step, 1e-12 to 1e-2.
     render_mode : str, optional
         None: nothing is drawn.
 
     Raises
     ------
     InputError
-        For a vehicle that does not hover, and for options that cannot be used.
+        For a vehicle that does not hover, and for invalid options.
 
     Examples
     --------
@@ -250,7 +250,7 @@ def make(
     duration: float | str = 10.0, disturbance: float = 1.0, wind: Any = (0.0, 0.0, 0.0), gusts: float | str = 0.0,
     tolerance: float = 1e-4,
 ) -> FlightEnv:  # fmt: skip
-    """An environment, for those who do without Gymnasium's `make`.
+    """Makes an environment without Gymnasium.
 
     Parameters
     ----------
@@ -263,13 +263,13 @@ def make(
     duration : float or str, default 10.0
         Time after which an episode is truncated [s].
     disturbance : float, default 1.0
-        Largest deviation of the start, as of HoverEnv.
+        Largest deviation of the start, as for HoverEnv.
     wind : array_like, shape (3,), default (0.0, 0.0, 0.0)
         Steady wind in earth axes [m/s].
     gusts : float or str, default 0.0
         Standard deviation of gusts on each axis [m/s], with a correlation time of 0.5 s, constant over a step.
     tolerance : float, default 0.0001
-        Admissible relative error of an integration step, 1e-12 to 1e-2.
+        Largest relative error of an integration step, 1e-12 to 1e-2.
 
     Returns
     -------
@@ -279,7 +279,7 @@ def make(
     Raises
     ------
     InputError
-        For a vehicle that does not hover, and for options that cannot be used.
+        For a vehicle that does not hover, and for invalid options.
 
     Examples
     --------
@@ -300,7 +300,7 @@ def make_vec(
     duration: float | str = 10.0, disturbance: float = 1.0, wind: Any = (0.0, 0.0, 0.0), gusts: float | str = 0.0,
     tolerance: float = 1e-4, autoreset: str = "NextStep",
 ) -> FlightVectorEnv:  # fmt: skip
-    """Many environments in arrays, whose flights are stepped in one call, on threads.
+    """Makes many environments in arrays, stepped in one call on several threads.
 
     Parameters
     ----------
@@ -317,16 +317,16 @@ def make_vec(
     duration : float or str, default 10.0
         Time after which an episode is truncated [s].
     disturbance : float, default 1.0
-        Largest deviation of the start, as of HoverEnv.
+        Largest deviation of the start, as for HoverEnv.
     wind : array_like, shape (3,), default (0.0, 0.0, 0.0)
         Steady wind in earth axes [m/s].
     gusts : float or str, default 0.0
         Standard deviation of gusts on each axis [m/s], with a correlation time of 0.5 s, constant over a step.
     tolerance : float, default 0.0001
-        Admissible relative error of an integration step, 1e-12 to 1e-2.
+        Largest relative error of an integration step, 1e-12 to 1e-2.
     autoreset : str, default 'NextStep'
-        When a flight that has ended starts anew: "NextStep", where the next action is ignored and earns 0, or
-        "SameStep", where infos["final_obs"] has the last observation.
+        When a flight that has ended restarts: "NextStep", with the next action ignored and a reward of 0, or
+        "SameStep", with the last observation in infos["final_obs"].
 
     Returns
     -------
@@ -336,7 +336,7 @@ def make_vec(
     Raises
     ------
     InputError
-        For a vehicle that does not hover, and for options that cannot be used.
+        For a vehicle that does not hover, and for invalid options.
 
     Examples
     --------

@@ -1,4 +1,4 @@
-"""Figures of results, drawn with matplotlib for users to go on editing.
+"""Figures of results with matplotlib, which you can edit.
 
     import wingbeat.plot
     figure = wingbeat.plot.cycle(vehicle.solve())       # a matplotlib Figure
@@ -7,12 +7,11 @@
 
 Functions of one panel take Axes as `ax` and return them; functions of several panels take a Figure or SubFigure as
 `figure` and return it. Without one they make a figure of `width` ("89 mm") with matplotlib.pyplot; none calls
-`plt.show()`.
-The style, also for figures of your own, is the file `style`: `plt.style.use(wingbeat.plot.style)`. `colours` are the
-colours of the program's figures by their meaning (`colours["copper"]`), `ordered` those of an ordered quantity,
-`single_column` and `double_column` widths of 89 and 183 mm, as SI numbers with their unit.
+`plt.show()`. The style, also for figures of your own, is the file `style`: `plt.style.use(wingbeat.plot.style)`.
+`colours` are the colours of the program's figures by meaning (`colours["copper"]`), `ordered` those of an ordered
+quantity, `single_column` and `double_column` widths of 89 and 183 mm, as SI numbers with their unit.
 
-matplotlib is needed by this module alone, and `import wingbeat` does not import it.
+Only this module needs matplotlib; `import wingbeat` does not import it.
 """
 
 from collections.abc import Mapping

@@ -188,16 +188,6 @@ const Description<OfferedMotor>& motor_description() {
   return description;
 }
 
-const Description<Problem>& problem_description() {
-  static const Description<Problem> description =
-      Description<Problem>()
-          .always("message", "", "a sentence", &Problem::message)
-          .sometimes("key", "", "", &Problem::key)
-          .sometimes("line", "", "0: of the input as a whole", &Problem::line)
-          .sometimes("column", "", "", &Problem::column);
-  return description;
-}
-
 }  // namespace
 
 Json tables_of_the_library() { return tables_description().json({}); }
@@ -206,7 +196,6 @@ Json start_up_answer(const TransientResult& result) { return start_up_descriptio
 Json mechanism_answer(const Vehicle<double>& vehicle) { return mechanism_description().json(vehicle); }
 Json slopes_answer(const Slopes& slopes) { return slopes_description().json(slopes); }
 Json motors_answer(const std::vector<OfferedMotor>& motors) { return {{"motors", motor_description().list(motors)}}; }
-Json problem_answer(const Problem& problem) { return problem_description().json(problem); }
 
 Json answer_schemas() {
   return {{"Key", key_description().schema()},
@@ -220,7 +209,7 @@ Json answer_schemas() {
           {"Mechanism", mechanism_description().schema()},
           {"Gradients", slopes_description().schema()},
           {"Motor", motor_description().schema()},
-          {"Problem", problem_description().schema()}};
+          {"Problem", problem_schema()}};
 }
 
 }  // namespace wingbeat::web

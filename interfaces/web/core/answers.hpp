@@ -42,8 +42,9 @@ Json mechanism_answer(const Vehicle<double>& vehicle);
 Json slopes_answer(const Slopes& slopes);
 Json motors_answer(const std::vector<OfferedMotor>& motors);
 Json problem_answer(const Problem& problem);
+Json problem_schema();
 
-/// The schema of each answer by the name of its type.
+/// The schema of each answer but those of flights by the name of its type.
 Json answer_schemas();
 
 }  // namespace wingbeat::web

@@ -39,27 +39,6 @@ Json read_vehicle(const std::string& text, const std::string& name, const nlohma
   return {{"toml", loaded ? write_design(design) : text}, {"name", design.name}};
 }
 
-const Design<double>& explored(const std::string& text, const std::vector<std::string>& assignments) {
-  struct Read {
-    std::string text;
-    Design<double> design;
-  };
-  static std::vector<Read> recent;  // most recent last
-  static Design<double> current;
-  constexpr std::size_t kept = 4;
-  const auto found = std::find_if(recent.begin(), recent.end(), [&](const Read& read) { return read.text == text; });
-  if (found != recent.end()) {
-    std::rotate(found, found + 1, recent.end());
-  } else {
-    Design<double> design = parse_design(text, "vehicle");
-    if (recent.size() == kept) recent.erase(recent.begin());
-    recent.push_back({text, std::move(design)});
-  }
-  const Design<double>& base = recent.back().design;
-  current = assignments.empty() ? base : design_with(assignments, &base);
-  return current;
-}
-
 Json values_of(const Design<double>& design) {
   Json values = Json::object();
   for (const Parameter<double>& key : parameter_table<double>()) {

@@ -1,4 +1,4 @@
-// Written by scripts/describe-results from the descriptions in interfaces/web/core/answers.cpp.
+// Written by scripts/describe-results from the descriptions in interfaces/web/core.
 
 export type Key = {
   key: string;
@@ -36,11 +36,11 @@ export type Quantity = {
 };
 
 export type Report = {
-  /** null where undecided */
+  /** null if undecided */
   status: 'flapping' | 'stalled' | 'locked' | 'jammed' | null;
   /** a sentence with the evidence */
   status_detail: string;
-  /** inside, or the limits that are left */
+  /** inside, or the limits that are exceeded */
   domain: string | null;
   /** the same in a sentence with numbers; null inside the domain */
   domain_detail: string | null;
@@ -291,4 +291,62 @@ export type Problem = {
   /** 0: of the input as a whole */
   line?: number;
   column?: number;
+};
+
+export type FlightBegun = {
+  /** trimmed at hover */
+  flies: boolean;
+  /** of the trim */
+  status: 'trimmed' | 'beyond_controls' | 'untrimmable' | 'does_not_flap';
+  /** a sentence */
+  detail: string;
+  controller: 'none' | 'lqr' | 'pid';
+  /** of the wings at hover [Hz] */
+  frequency_hz: number | null;
+  /** mean electrical power at hover [W] */
+  power_w: number | null;
+  /** [Hz] */
+  control_rate_hz: number | null;
+  /** that the controller is designed for [s] */
+  delay_s: number | null;
+  /** [s] */
+  row_period_s: number | null;
+  /** at the start, over the ground [m] */
+  height_m: number;
+  /** the voltage is the amplitude of a wave */
+  amplitude: boolean;
+  controls: {
+    name: string;
+    unit: string;
+    /** at hover */
+    trimmed: number;
+    /** end of its range */
+    low: number;
+    high: number;
+  }[];
+  /** a sentence for each axis without control */
+  uncontrolled: string[];
+  wings: {
+    /** +1 right, -1 left */
+    side: number;
+    /** -1: it flaps against the stroke angle */
+    sense: number;
+    /** in body axes: forward, right, down [m] */
+    shoulder: number[];
+  }[];
+  /** of a wing: distance from the stroke axis and chord [m] */
+  outline: [number, number][];
+};
+
+export type FlightPiece = {
+  /** at its end [s] */
+  time_s: number;
+  /** false: the flight has ended */
+  flies: boolean;
+  /** of a flight that has ended */
+  outcome: 'completed' | 'crashed' | 'jammed' | 'battery_empty' | 'no_trim';
+  /** a sentence where it has ended */
+  detail: string;
+  /** of a battery */
+  charge: number | null;
 };

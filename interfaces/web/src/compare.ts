@@ -1,6 +1,7 @@
 // Pinned designs beside the present one: several of them, each to be swapped with it or forgotten.
 import {byId, html} from './dom';
 import type {Explorer} from './explorer';
+import {paperTable} from './paper_table';
 import {showMetrics} from './results';
 import {describeDesign, maxPins} from './state';
 
@@ -32,6 +33,8 @@ export class Compare {
     this.list();
     if (shown) {
       const pins = shown.pins.map((pin, n) => ({name: pinName(n), report: pin.solved.report}));
+      const paper = paperTable(explorer);
+      byId('paper-values').replaceChildren(...(paper ? [paper] : []));
       showMetrics(byId('metrics'), explorer.core.tables.metrics, shown.solved.report, pins);
     }
   }

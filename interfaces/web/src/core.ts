@@ -1,12 +1,15 @@
 // The library, compiled to WebAssembly, with types. All numbers are SI.
 import createCore from '#core/wingbeat-core.mjs';
-import wasmUrl from '#core/wingbeat-core.wasm?url';
+import packedUrl from '#packed/wingbeat-core.wasm.xz?url';
+import packedFlightUrl from '#packed/wingbeat-flight.wasm.xz?url';
+import UnpackWorker from './unpack?worker&inline';
 import type * as answers from './answers';
-import type {Gradients, Motor, Problem, Tables} from './answers';
+import type {Gradients, Motor, Tables} from './answers';
+import {type Answer, type Columns, instance, list, resultOf, type Stated} from './library';
 
+export {assignments, type Columns, Refused, type Stated} from './library';
 export type {Balance, Evidence, Key, Motor, Problem, Quantity, Report, Tables} from './answers';
 
-export type Columns = Record<string, Float64Array>;
 export type Values = Record<string, number | string | boolean | null>;
 export type Solved = answers.Solved & {columns: Columns};
 export type StartUp = answers.StartUp & {columns: Columns};
@@ -19,23 +22,6 @@ export interface RunOptions {
   allow_extrapolation?: boolean;
   endurance?: boolean;
   rows?: number;
-}
-/** A vehicle file and values of keys on top of it, as `--set` takes them. */
-export interface Stated {
-  readonly text: string;
-  readonly changes: Readonly<Record<string, string>>;
-}
-
-/** What the library refuses, in its own sentences. */
-export class Refused extends Error {
-  constructor(readonly problems: Problem[]) {
-    super(problems.map((p) => p.message).join('\n'));
-  }
-}
-
-interface Answer {
-  json: string;
-  columns?: Columns;
 }
 interface Module {
   tables(): string;
@@ -51,9 +37,6 @@ interface Module {
   quantity(text: string, unit: string): Answer;
 }
 
-/** `--set` assignments. */
-export const assignments = (changes: Stated['changes']) => Object.entries(changes).map(([k, v]) => `${k}=${v}`);
-
 export class Core {
   readonly tables: Tables;
   constructor(private readonly module: Module) {
@@ -61,26 +44,26 @@ export class Core {
   }
 
   read(text: string, name: string, tables: Record<string, string> = {}): {toml: string; name: string} {
-    return unpacked(this.module.read(text, name, JSON.stringify(tables)));
+    return resultOf(this.module.read(text, name, JSON.stringify(tables)));
   }
   values(s: Stated): Values {
-    return unpacked(this.module.values(s.text, list(s)));
+    return resultOf(this.module.values(s.text, list(s)));
   }
   /** The vehicle file with the changes in it, comments kept. */
   edited(s: Stated): string {
-    return unpacked<{toml: string}>(this.module.edited(s.text, list(s))).toml;
+    return resultOf<{toml: string}>(this.module.edited(s.text, list(s))).toml;
   }
   solve(s: Stated, options: RunOptions): Solved {
-    return unpacked(this.module.solve(s.text, list(s), pack(options)));
+    return resultOf(this.module.solve(s.text, list(s), pack(options)));
   }
   startUp(s: Stated, options: RunOptions): StartUp {
-    return unpacked(this.module.startUp(s.text, list(s), pack(options)));
+    return resultOf(this.module.startUp(s.text, list(s), pack(options)));
   }
   gradients(s: Stated, keys: string[], options: RunOptions): Gradients['gradients'] {
-    return unpacked<Gradients>(this.module.gradients(s.text, list(s), JSON.stringify(keys), pack(options))).gradients;
+    return resultOf<Gradients>(this.module.gradients(s.text, list(s), JSON.stringify(keys), pack(options))).gradients;
   }
   mechanism(s: Stated, angles: Float64Array): Mechanism {
-    return unpacked(this.module.mechanism(s.text, list(s), angles));
+    return resultOf(this.module.mechanism(s.text, list(s), angles));
   }
   ensemble(
     s: Stated,
@@ -88,42 +71,46 @@ export class Core {
     values: Float64Array,
     options: RunOptions,
   ): {statuses: string[]; columns: Columns} {
-    return unpacked(this.module.ensemble(s.text, list(s), JSON.stringify(keys), values, pack(options)));
+    return resultOf(this.module.ensemble(s.text, list(s), JSON.stringify(keys), values, pack(options)));
   }
   /** The SI value of "1200 rpm" for "Hz", as the options of the program read it. */
   quantity(text: string, unit: string): number {
-    return unpacked<{value: number}>(this.module.quantity(text, unit)).value;
+    return resultOf<{value: number}>(this.module.quantity(text, unit)).value;
   }
   motors(s: Stated, catalogue: string, gear: number): Motor[] {
-    return unpacked<{motors: Motor[]}>(this.module.motors(s.text, list(s), catalogue, gear)).motors;
+    return resultOf<{motors: Motor[]}>(this.module.motors(s.text, list(s), catalogue, gear)).motors;
   }
 }
 
-const list = (s: Stated) => JSON.stringify(assignments(s.changes));
 const pack = (options: RunOptions) => JSON.stringify(options);
 
-function unpacked<T>(answer: Answer): T {
-  const found = JSON.parse(answer.json) as {errors?: Problem[]; columns?: Columns};
-  if (found.errors) throw new Refused(found.errors);
-  if (answer.columns) found.columns = answer.columns;
-  return found as T;
-}
-
 /** The compiled code, from the page itself where it stands in it, else from beside it. */
-export async function compiledCore(): Promise<WebAssembly.Module> {
-  const embedded = document.getElementById('wingbeat-core')?.textContent;
-  if (!embedded) return WebAssembly.compileStreaming(fetch(wasmUrl));
-  const packed = Uint8Array.from(atob(embedded), (c) => c.charCodeAt(0));
-  const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream('gzip'));
-  return WebAssembly.compile(await new Response(stream).arrayBuffer());
+export const compiledCore = () => compiled('wingbeat-core', packedUrl);
+export const compiledFlight = () => compiled('wingbeat-flight-core', packedFlightUrl);
+
+async function compiled(id: string, url: string): Promise<WebAssembly.Module> {
+  const embedded = document.getElementById(id)?.textContent;
+  return WebAssembly.compile(await unpacked(embedded ?? (await fetched(url))));
 }
 
-export async function startCore(compiled: WebAssembly.Module): Promise<Core> {
-  const instantiateWasm = (imports: WebAssembly.Imports, done: (instance: WebAssembly.Instance) => void) => {
-    void WebAssembly.instantiate(compiled, imports).then(done);
-    return {};
-  };
-  // Named, the file is not looked for beside the script, which has no place of its own in a worker made from text.
-  const locateFile = (name: string) => name;
-  return new Core((await createCore({instantiateWasm, locateFile})) as Module);
+async function fetched(url: string): Promise<ArrayBuffer> {
+  const response = await fetch(url);
+  if (!response.ok) throw new Error(`${response.url}: ${response.status} ${response.statusText}`);
+  return response.arrayBuffer();
 }
+
+/** In a worker, for the page is to answer meanwhile. */
+function unpacked(packed: string | ArrayBuffer): Promise<ArrayBuffer> {
+  return new Promise((done, failed) => {
+    const worker = new UnpackWorker();
+    worker.onmessage = ({data}: MessageEvent<ArrayBuffer | string>) => {
+      worker.terminate();
+      if (typeof data === 'string') failed(new Error(data));
+      else done(data);
+    };
+    worker.onerror = (event) => failed(new Error(event.message));
+    worker.postMessage(packed, typeof packed === 'string' ? [] : [packed]);
+  });
+}
+
+export const startCore = async (compiled: WebAssembly.Module) => new Core(await instance<Module>(createCore, compiled));

@@ -1,7 +1,8 @@
 // Workers, asked from the page. Each can be ended: by the user, by a deadline, or because a later request waits.
-import type {Kind, Reply, Request, Tasks} from './worker';
+import type {Tasks} from './worker';
 import type {Problem} from './core';
 import ExplorerWorker from './worker?worker&inline';
+import type {Reply} from './worker_loop';
 
 /** `overtaken`: a later request took its place. `failed`: no answer, with the reason. */
 export type Outcome<T> =
@@ -10,15 +11,18 @@ export type Outcome<T> =
   | {kind: 'overtaken'}
   | {kind: 'failed'; why: string};
 
+/** What can be asked by its kind. */
+type Asks<T> = {[K in keyof T]: {ask: unknown; answer: unknown}};
+
 interface Job {
-  request: Request;
+  request: {id: number; kind: PropertyKey; ask: unknown};
   done: (outcome: Outcome<never>) => void;
   progress: ((value: never) => void) | undefined;
   begun: number;
   deadline: number;
 }
 
-export class Channel {
+export class Channel<T extends Asks<T> = Tasks> {
   private worker: Worker | null = null;
   private running: Job | null = null;
   private waiting: Job | null = null;
@@ -34,6 +38,7 @@ export class Channel {
     private readonly compiled: WebAssembly.Module,
     private readonly deadline: number,
     private readonly patience: number,
+    private readonly make: () => Worker = () => new ExplorerWorker(),
   ) {}
 
   get busy() {
@@ -50,14 +55,14 @@ export class Channel {
   }
 
   /** The latest request wins: one that still waits is overtaken. */
-  ask<K extends Kind>(
+  ask<K extends keyof T>(
     kind: K,
-    ask: Tasks[K]['ask'],
+    ask: T[K]['ask'],
     progress?: (value: never) => void,
-  ): Promise<Outcome<Tasks[K]['answer']>> {
+  ): Promise<Outcome<T[K]['answer']>> {
     return new Promise((done) => {
-      const request = {id: ++this.last, kind, ask} as Request;
-      const job: Job = {request, done: done, progress, begun: 0, deadline: this.deadline};
+      const request = {id: ++this.last, kind, ask};
+      const job: Job = {request, done, progress, begun: 0, deadline: this.deadline};
       this.waiting?.done({kind: 'overtaken'});
       this.waiting = null;
       if (!this.running) return this.start(job);
@@ -75,6 +80,13 @@ export class Channel {
     this.end({kind: 'failed', why});
   }
 
+  /** Ends the worker, too; the next request starts another one. */
+  close() {
+    this.stop('ended');
+    this.worker?.terminate();
+    this.worker = null;
+  }
+
   private start(job: Job) {
     this.running = job;
     job.begun = performance.now();
@@ -84,7 +96,7 @@ export class Channel {
   }
 
   private started(): Worker {
-    const worker = new ExplorerWorker();
+    const worker = this.make();
     worker.postMessage({compiled: this.compiled});
     worker.onmessage = (event: MessageEvent<Reply>) => this.received(event.data);
     worker.onerror = (event) => {

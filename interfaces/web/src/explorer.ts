@@ -24,6 +24,8 @@ export interface Going {
   from?: 'user' | 'undo' | 'browser';
   /** The address stays as it is. */
   keepAddress?: boolean;
+  /** A step of its own, however soon it follows the one before. */
+  apart?: boolean;
 }
 export type Work = 'solving' | 'solved' | 'failed';
 
@@ -95,7 +97,7 @@ export class Explorer {
   /** Takes a state. False where it is refused, overtaken or ended; the state before stays where it is refused. */
   async go(
     state: State,
-    {final = true, origin = '', from = 'user', keepAddress = false}: Going = {},
+    {final = true, origin = '', from = 'user', keepAddress = false, apart = false}: Going = {},
   ): Promise<boolean> {
     const before = this.state;
     let values, base;
@@ -110,7 +112,7 @@ export class Explorer {
     Object.assign(this, {state, values, base});
     if (from !== 'user') this.history.visit(state);
     if (from === 'browser') this.step = false;
-    else if (final) this.step = from === 'undo' || this.history.commit(state, origin) || this.step;
+    else if (final) this.step = from === 'undo' || this.history.commit(state, apart ? '' : origin) || this.step;
     if (origin) this.accept(origin);
     if (!origin || state.design.text !== before.design.text) {
       this.controls.acceptAll();

@@ -28,12 +28,14 @@ const drawn = [
 export function standalone(picture: SVGSVGElement): string {
   const copy = picture.cloneNode(true) as SVGSVGElement;
   const [, , width, height] = (picture.getAttribute('viewBox') ?? '0 0 400 300').split(' ').map(Number);
-  const originals = picture.querySelectorAll('*');
+  const originals = picture.querySelectorAll('*'),
+    live = copy.querySelectorAll('.live'); // of one instant
   copy.querySelectorAll('*').forEach((element, n) => {
     const style = getComputedStyle(originals[n]!);
     for (const name of drawn) element.setAttribute(name, style.getPropertyValue(name));
     element.removeAttribute('class');
   });
+  for (const element of live) element.remove();
   const paper = document.createElementNS('http://www.w3.org/2000/svg', 'rect');
   for (const [name, value] of Object.entries({width, height, fill: getComputedStyle(document.body).backgroundColor})) {
     paper.setAttribute(name, String(value));

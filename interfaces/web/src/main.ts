@@ -9,8 +9,13 @@ import {compiledCore, startCore} from './core';
 import {byId} from './dom';
 import {Explorer} from './explorer';
 import {Files} from './files';
+import {FitPanel} from './fit_panel';
+import {FlightView} from './flight';
+import {Glossary} from './glossary';
 import {HoverPanel} from './hover_panel';
 import {stateOf} from './link';
+import {Share} from './share';
+import {Sound} from './sound';
 import {stateFor} from './state';
 import {Studies} from './studies';
 import {Toolbar} from './toolbar';
@@ -65,6 +70,11 @@ async function start() {
   new Toolbar(explorer);
   new Compare(explorer);
   new Files(explorer);
+  new Share(explorer);
+  new Glossary(core.tables);
+  new Sound(explorer);
+  const flight = new FlightView(explorer);
+  explorer.views.followers.push((share, playing) => flight.show(share, playing));
   new Tour(explorer);
   new About();
   embed();
@@ -72,12 +82,13 @@ async function start() {
   await explorer.idle();
   new Studies(explorer);
   new HoverPanel(explorer);
+  new FitPanel(explorer);
   window.addEventListener('resize', () => explorer.views.resized());
   window.addEventListener('popstate', (event) => {
     const state = explorer.visitedState(event.state);
     void (state ? explorer.go(state, {from: 'browser'}) : openAddress(explorer));
   });
-  Object.assign(window, {explorer, shipped}); // for tests, and for the curious
+  Object.assign(window, {explorer, shipped, flight}); // for tests, and for the curious
   document.body.dataset.ready = 'true';
 }
 

@@ -73,7 +73,7 @@ const meanSquare = (numbers: number[]) => numbers.reduce((sum, x) => sum + x * x
 
 /** The rows in the model's cycle; times are shifted as a whole so that the deviations are least. */
 export function match({columns}: Measured, cycle: Columns): Matched {
-  const names = Object.keys(columns).filter((name) => !abscissae.includes(name) && cycle[name]);
+  const names = [...sizesOf({columns} as Measured, cycle).keys()];
   const deviationsAt = (shares: Float64Array, name: string) => {
     const found: number[] = [];
     columns[name]!.forEach((y, row) => {
@@ -99,6 +99,38 @@ export function match({columns}: Measured, cycle: Columns): Matched {
   }
   const deviations = Object.fromEntries(names.map((name) => [name, Math.sqrt(meanSquare(deviationsAt(shares, name)))]));
   return {shares, columns, shift, deviations};
+}
+
+/**
+ * Deviations of the model from a measurement that begins at a share of the period, each over the size of its column in
+ * the first cycle compared with, and their derivatives by the beginning.
+ */
+export function residualsOf({columns}: Measured, cycle: Columns, sizes: ReadonlyMap<string, number>, shift: number) {
+  const time = columns.time_s,
+    period = cycle.time_s![cycle.time_s!.length - 1]!;
+  const residuals: number[] = [],
+    byShift: number[] = [];
+  for (const [name, size] of sizes) {
+    const model = cycle[name]!,
+      rows = model.length - 1;
+    columns[name]!.forEach((y, row) => {
+      const share = time
+        ? time[row]! / period + shift
+        : shareOfAngle(cycle.crank_angle_rad!, columns.crank_angle_rad![row]!);
+      if (!Number.isFinite(y) || !Number.isFinite(share)) return;
+      residuals.push((atShare(model, share) - y) / size);
+      byShift.push(((atShare(model, share + 0.5 / rows) - atShare(model, share - 0.5 / rows)) * rows) / size);
+    });
+  }
+  return {residuals: Float64Array.from(residuals), byShift: time ? Float64Array.from(byShift) : null};
+}
+
+/** The columns that a cycle and a measurement have in common, each with its size. */
+export function sizesOf({columns}: Measured, cycle: Columns): Map<string, number> {
+  const names = Object.keys(columns).filter(
+    (name) => !abscissae.includes(name) && cycle[name] && Number.isFinite(cycle[name][0]),
+  );
+  return new Map(names.map((name) => [name, Math.sqrt(meanSquare(Array.from(cycle[name]!))) || 1]));
 }
 
 /** Where a periodic function is least: the best of equidistant points, then of ever finer ones around it. */

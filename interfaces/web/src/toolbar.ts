@@ -1,12 +1,13 @@
 // Choosing vehicles, motors and the conditions of a run; undo and redo; playback; what is copied.
+import {identity} from './about';
 import {Refused, type Motor} from './core';
 import {byId, html} from './dom';
 import {pythonProgram, shellCommand} from './elsewhere';
 import type {Explorer} from './explorer';
-import {linkOf} from './link';
 import {powerSeries} from './pictures/cycle_plots';
 import {exact, readable} from './quantities';
-import {type Design, heldUnit, type Hold, type State} from './state';
+import {copied} from './share';
+import {describeDesign, type Design, heldUnit, type Hold, type State} from './state';
 import {isShipped, motorCatalogue, shipped, shippedDesign} from './vehicles';
 
 /** Equal up to the rounding of texts. */
@@ -30,6 +31,11 @@ export class Toolbar {
     const abscissa = byId<HTMLSelectElement>('abscissa');
     abscissa.addEventListener('change', () => {
       explorer.views.abscissa = abscissa.value as 'time' | 'crank angle';
+      explorer.views.drawCycle();
+    });
+    const zoom = byId<HTMLSelectElement>('zoom');
+    zoom.addEventListener('change', () => {
+      explorer.views.plots.zoom(Number(zoom.value));
       explorer.views.drawCycle();
     });
     byId('power-legend').append(...powerSeries.map((name, n) => html('b', {class: `label-${n}`}, name)));
@@ -59,6 +65,7 @@ export class Toolbar {
     enable('undo', explorer.history.canUndo);
     enable('redo', explorer.history.canRedo);
     enable('restore', Object.keys(state.design.changes).length > 0);
+    byId('print-state').textContent = `${describeDesign(state.design, state.condition)}; ${identity}`;
     byId('shell').textContent = shellCommand(state, isOwn(state.design));
     byId('python').textContent = pythonProgram(state, isOwn(state.design));
     clearTimeout(this.motorClock);
@@ -226,10 +233,6 @@ export class Toolbar {
     for (const button of document.querySelectorAll<HTMLButtonElement>('[data-copy]')) {
       button.addEventListener('click', () => void copy(byId(button.dataset.copy!).textContent ?? '', button));
     }
-    byId('link').addEventListener('click', (event) => {
-      const button = event.currentTarget as HTMLElement;
-      void linkOf(this.explorer.state, shipped).then((link) => copy(location.href.replace(/#.*|$/, link), button));
-    });
   }
 
   private theme() {
@@ -260,12 +263,7 @@ const isOwn = (design: Design) => shipped[design.name] !== design.text;
 
 async function copy(text: string, button: HTMLElement) {
   const label = button.textContent;
-  try {
-    await navigator.clipboard.writeText(text);
-    button.textContent = 'copied';
-  } catch {
-    button.textContent = 'not allowed here';
-  }
+  button.textContent = (await copied(text)) ? 'copied' : 'not allowed here';
   setTimeout(() => {
     button.textContent = label;
   }, 1500);

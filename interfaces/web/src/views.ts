@@ -1,16 +1,19 @@
 // What the page shows of results: headline, mechanism, flows, cycle, tables. Each is of the state of explorer.shown;
 // where that is not the state of the page, the page says so.
-import type {Columns, Mechanism} from './core';
+import type {Columns, Mechanism, Values} from './core';
 import {byId, html} from './dom';
 import type {Explorer, Shown} from './explorer';
 import {type Abscissa, CyclePlots} from './pictures/cycle_plots';
 import {match, type Matched, type Measured} from './measured';
+import {LiveFlow} from './pictures/live_flow';
 import * as drawn from './pictures/mechanism';
 import {drawSankey} from './pictures/sankey';
+import {drawnWing} from './pictures/grips';
 import {Playback} from './playback';
 import {readable} from './quantities';
 import {showBalance, showHeadline} from './results';
 import {describeDesign, type State} from './state';
+import {Touch} from './touch';
 import type {Computed} from './worker';
 
 /** [ms] that a computation may take before the page says that it runs. */
@@ -31,8 +34,22 @@ export class Views {
   private ghostPeaks: drawn.Peaks | null = null;
   private notice = 0;
   private measured: Measured | null = null;
+  private readonly touch: Touch;
+  private readonly flow: LiveFlow;
+  private picture: drawn.Drawn | null = null;
+  private ghostPicture: drawn.Drawn | null = null;
+  private readonly bases = new Map<string, Values>();
+  /** Called with what is measured, or null when that is taken away. */
+  measuredChanged: (measured: Measured | null) => void = () => {};
+  /** Others that follow the instant that the page shows. */
+  readonly followers: ((share: number, playing: boolean) => void)[] = [];
 
   constructor(private readonly explorer: Explorer) {
+    this.touch = new Touch(explorer, document.querySelector<SVGSVGElement>('#mechanism')!, {
+      playing: () => this.playback.playing,
+      set: (on) => this.play(on),
+    });
+    this.flow = new LiveFlow(document.querySelector<SVGSVGElement>('#sankey')!);
     this.plots = new CyclePlots(byId('plots'), (share) => {
       this.pause();
       this.playback.show(share);
@@ -111,6 +128,11 @@ export class Views {
       : (cycle?.stroke_angle_rad ?? new Float64Array([0]));
     this.range = [stroke.reduce((a, b) => Math.min(a, b)), stroke.reduce((a, b) => Math.max(a, b))];
     this.peaks = cycle ? drawn.peaksOf(cycle) : null;
+    const picture = this.drawnAs(shown, shown.state.design.text, this.range);
+    this.picture = {...picture, room: this.touch.room ?? picture.room};
+    const ghost = this.ghost,
+      text = shown.state.pins[0]?.text;
+    this.ghostPicture = ghost && text !== undefined ? this.drawnAs(ghost, text, [0, 0]) : null;
     const other = this.ghost?.solved.columns;
     this.ghostPeaks = other?.time_s ? drawn.peaksOf(other) : null;
     showHeadline(byId('headline-numbers'), solved, this.explorer.core.tables.metrics);
@@ -119,6 +141,13 @@ export class Views {
     this.drawCycle();
     if (!cycle) this.playback.share = 0;
     this.drawInstant(this.playback.share);
+  }
+
+  private drawnAs({mechanism, values}: Computed, text: string, range: [number, number]): drawn.Drawn {
+    let base = this.bases.get(text);
+    if (!base) this.bases.set(text, (base = this.explorer.core.values({text, changes: {}})));
+    const wing = drawnWing(values, base);
+    return {mechanism, wing, room: drawn.roomFor(mechanism, range, wing)};
   }
 
   /** Pictures whose letters keep their size follow the width of the page. */
@@ -130,16 +159,22 @@ export class Views {
   private drawFlows() {
     const picture = document.querySelector<SVGSVGElement>('#sankey')!;
     this.flowRoom ||= picture.clientWidth; // a layout of the page, so not at each change
-    drawSankey(picture, this.drawn && this.hasCycle() ? this.drawn.solved.balance : null, this.flowRoom);
+    const balance = this.drawn && this.hasCycle() ? this.drawn.solved.balance : null;
+    const flows = drawSankey(picture, balance, this.flowRoom);
+    this.flow.set(flows, balance, this.cycle, this.drawn?.values ?? {});
+    this.flow.show(this.playback?.share ?? 0);
   }
 
   drawCycle() {
     if (!this.drawn) return;
     const force =
       {'four-bar': 'coupler force', tabulated: 'reaction'}[this.drawn.mechanism.type as string] ?? 'rod force';
+    const legend = byId('force-name');
+    legend.textContent = force;
+    legend.hidden = !drawn.hasRod(this.drawn.mechanism); // an arrow is drawn where there is a rod
     const ghost = this.ghost?.solved.columns;
     const matched = this.measured && this.cycle ? match(this.measured, this.cycle) : null;
-    this.plots.draw(this.cycle, ghost?.time_s ? ghost : null, this.abscissa, force, matched);
+    this.plots.draw(this.cycle, ghost?.time_s ? ghost : null, this.abscissa, force, matched, this.residuals);
     this.showMeasured(matched);
   }
 
@@ -147,7 +182,13 @@ export class Views {
   measure(measured: Measured | null) {
     this.measured = measured;
     this.drawCycle();
+    this.measuredChanged(measured);
   }
+  get measurement() {
+    return this.measured;
+  }
+  /** Whether panels of measured columns show the measurement minus the model. */
+  residuals = false;
 
   private showMeasured(matched: Matched | null) {
     const note = byId('measured'),
@@ -185,13 +226,13 @@ export class Views {
       rest = {angle, stopped: share >= 1, text: drawn.restText(status, solved.reached ? angle : null)};
     }
     const ghost =
-      this.ghost && this.ghostPeaks
-        ? {
-            mechanism: this.ghost.mechanism,
-            instant: drawn.instantAt(this.ghost.solved.columns, this.ghostPeaks, share),
-          }
+      this.ghost && this.ghostPeaks && this.ghostPicture
+        ? {...this.ghostPicture, instant: drawn.instantAt(this.ghost.solved.columns, this.ghostPeaks, share)}
         : null;
-    drawn.drawMechanism(picture, mechanism, instant, this.range, ghost, rest);
+    drawn.drawMechanism(picture, this.picture!, instant, this.range, ghost, rest);
+    this.touch.show(this.picture!, instant);
+    this.flow.show(share);
+    for (const follow of this.followers) follow(share, this.playback?.playing ?? false);
     const scrub = byId<HTMLInputElement>('scrub');
     if (document.activeElement !== scrub) scrub.value = String(Math.round(share * 1000));
   }

@@ -1,7 +1,10 @@
 // The library in a worker: one task after the other, each answered once. The page ends the worker to end a task.
 import {type Columns, type Core, type Report, Refused, type RunOptions, startCore} from './core';
+import {type Compared, fit, type FitLimits, type FitResult} from './fit';
 import {type Found, type Limits, makeHover, type Tried} from './hover';
-import type {Mechanism, Problem, Solved, StartUp, Stated, Values} from './core';
+import {match, type Measured, residualsOf, sizesOf} from './measured';
+import {type Reply, serve} from './worker_loop';
+import type {Mechanism, Solved, StartUp, Stated, Values} from './core';
 
 /** What is known of one design. */
 export interface Computed {
@@ -23,15 +26,14 @@ export interface Tasks {
   };
   /** Progress is each design on the path. */
   hover: {ask: {stated: Stated; keys: string[]; limits: Limits; options: RunOptions}; answer: Found};
+  /** Progress is each design on the path. */
+  fit: {
+    ask: {stated: Stated; keys: string[]; limits: FitLimits; options: RunOptions; measured: Measured};
+    answer: FitResult;
+  };
 }
 export type Kind = keyof Tasks;
 export type Request = {[K in Kind]: {id: number; kind: K; ask: Tasks[K]['ask']}}[Kind];
-export type Reply =
-  | {id: number; begun: true}
-  | {id: number; progress: unknown}
-  | {id: number; answer: Tasks[Kind]['answer']}
-  | {id: number; refused: Problem[]}
-  | {id: number; broken: string};
 
 const rows = 361;
 const fullTurn = Float64Array.from({length: 181}, (_, n) => (2 * Math.PI * n) / 180);
@@ -64,6 +66,43 @@ function ensemble(library: Core, id: number, task: Tasks['ensemble']['ask']): Ta
     self.postMessage({id, progress: Math.min(1, (begin + task.chunk) / count)} satisfies Reply);
   }
   return {statuses, columns};
+}
+
+/** Solved closely, so that differences of designs are those of their keys. */
+const fine = 1e-9;
+
+function fitted(library: Core, id: number, task: Tasks['fit']['ask']): FitResult {
+  const {stated, keys, limits, options, measured} = task;
+  const cycleOf = (values: number[]): Columns | null => {
+    const changes = {...stated.changes, ...Object.fromEntries(keys.map((key, i) => [key, String(values[i])]))};
+    try {
+      const {columns} = library.solve({text: stated.text, changes}, {...options, rows, tolerance: fine});
+      return columns.time_s ? columns : null;
+    } catch (error) {
+      if (error instanceof Refused) return null; // a mechanism that cannot be built
+      throw error;
+    }
+  };
+  const present = library.values(stated);
+  const start = keys.map((key, i) => Math.min(limits.upper[i]!, Math.max(limits.lower[i]!, Number(present[key]))));
+  const first = cycleOf(start);
+  if (!first)
+    throw new Refused([
+      {message: 'The design has no steady cycle, or cannot be built with its keys within these limits.'},
+    ]);
+  const sizes = sizesOf(measured, first),
+    {shift} = match(measured, first);
+  if (sizes.size === 0) throw new Refused([{message: 'The design has none of the quantities measured.'}]);
+  const compare = (values: number[], at: number): Compared | null => {
+    const cycle = cycleOf(values);
+    return cycle && residualsOf(measured, cycle, sizes, at);
+  };
+  const period = first.time_s![first.time_s!.length - 1]!;
+  const found = fit(start, (shift ?? 0) / period, limits, compare, (progress) =>
+    self.postMessage({id, progress} satisfies Reply),
+  );
+  if (!found) throw new Refused([{message: 'The design has no steady cycle.'}]);
+  return found;
 }
 
 function hover(library: Core, id: number, {stated, keys, limits, options}: Tasks['hover']['ask']): Found {
@@ -114,30 +153,9 @@ function answer(library: Core, request: Request): Tasks[Kind]['answer'] {
       return ensemble(library, request.id, ask);
     case 'hover':
       return hover(library, request.id, ask);
+    case 'fit':
+      return fitted(library, request.id, ask);
   }
 }
 
-/** The buffers of all arrays in an answer, which are handed over without a copy. */
-function buffersOf(value: unknown, found: ArrayBufferLike[] = []): ArrayBufferLike[] {
-  if (value instanceof Float64Array) found.push(value.buffer);
-  else if (value && typeof value === 'object') for (const part of Object.values(value)) buffersOf(part, found);
-  return found;
-}
-
-let core: Promise<Core> | null = null;
-self.onmessage = async (event: MessageEvent<Request | {compiled: WebAssembly.Module}>) => {
-  if ('compiled' in event.data) {
-    core = startCore(event.data.compiled);
-    return;
-  }
-  const {id} = event.data;
-  let reply: Reply;
-  try {
-    const library = await core!;
-    self.postMessage({id, begun: true} satisfies Reply);
-    reply = {id, answer: answer(library, event.data)};
-  } catch (error) {
-    reply = error instanceof Refused ? {id, refused: error.problems} : {id, broken: String(error)};
-  }
-  self.postMessage(reply, {transfer: 'answer' in reply ? (buffersOf(reply.answer) as Transferable[]) : []});
-};
+serve<Core, Request>(startCore, answer);

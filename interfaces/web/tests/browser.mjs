@@ -49,6 +49,8 @@ export async function open(browser, url, options = {}) {
   });
   const page = await context.newPage();
   page.on('console', (message) => {
+    // Screenshots of WebGL are read back, of which its driver without a graphics card warns.
+    if (/GPU stall due to ReadPixels/.test(message.text())) return;
     if (['error', 'warning'].includes(message.type())) problems.push(message.text());
   });
   page.on('pageerror', (error) => problems.push(String(error)));

@@ -1,34 +1,59 @@
 // What the page costs: scripts/test-explorer --measure.
+import {cpus, loadavg} from 'node:os';
 import {gzipSync} from 'node:zlib';
-import {readFileSync, readdirSync} from 'node:fs';
-import {join} from 'node:path';
-import {launch, open, root, serve, singleFile} from './browser.mjs';
+import {readFileSync} from 'node:fs';
+import {launch, open, serve, singleFile} from './browser.mjs';
 import {choose, compute} from './page_tools.mjs';
 
 const server = await serve(),
   browser = await launch();
 const {page, context} = await open(browser, server.url);
-const assets = readdirSync(join(root, 'build/explorer/site/assets')).length;
-console.log(`first load: ${server.sent()} bytes compressed (${assets} assets)`);
+console.log(`first load: ${server.sent()} bytes compressed`);
 const file = readFileSync(singleFile.replace('file://', ''));
 console.log(`single file: ${file.length} bytes, ${gzipSync(file).length} compressed`);
 
-const updates = await page.evaluate(async () => {
-  const slider = document.querySelector('[aria-label="supply.voltage, slider"]');
-  const times = [];
-  for (let n = 0; n < 200; ++n) {
-    await new Promise(requestAnimationFrame);
-    const begun = performance.now();
-    slider.value = String(400 + ((n * 7) % 400));
-    slider.dispatchEvent(new Event('input'));
-    await window.explorer.idle();
-    document.body.getBoundingClientRect(); // style and layout included
-    times.push(performance.now() - begun);
-  }
-  times.sort((a, b) => a - b);
-  return {median: times[100], late: times[190]};
-});
-console.log(`slider to picture: median ${updates.median.toFixed(1)} ms, 95 % within ${updates.late.toFixed(1)} ms`);
+/** From an input event of a slider to the picture laid out. */
+const sliding = (key) =>
+  page.evaluate(async (name) => {
+    const slider = document.querySelector(`[aria-label="${name}, slider"]`);
+    const times = [];
+    for (let n = 0; n < 200; ++n) {
+      await new Promise(requestAnimationFrame);
+      const begun = performance.now();
+      slider.value = String(400 + ((n * 7) % 200));
+      slider.dispatchEvent(new Event('input'));
+      await window.explorer.idle();
+      document.body.getBoundingClientRect(); // style and layout included
+      times.push(performance.now() - begun);
+    }
+    times.sort((a, b) => a - b);
+    return {median: times[100], late: times[190]};
+  }, key);
+const openSections = () =>
+  page.evaluate(() => {
+    for (const d of document.querySelectorAll('#controls details')) d.open = true;
+  });
+console.log(`load of the machine: ${loadavg().map((x) => x.toFixed(2))}, ${cpus().length} processors`);
+for (const [vehicle, key] of [
+  ['friction2022', 'supply.voltage'],
+  ['friction2022', 'transmission.crank_radius'],
+  ['two-wing-four-bar', 'supply.voltage'],
+  ['x-wing-crank', 'supply.voltage'],
+  ['hawkmoth', 'supply.voltage'],
+  ['pitch-hinge-crank', 'supply.voltage'],
+  ['two-wing-direct', 'supply.amplitude'],
+  ['two-wing-direct-hinge', 'supply.amplitude'],
+  ['purdue-flapper', 'supply.amplitude'],
+  ['robobee-piezo', 'supply.amplitude'],
+]) {
+  await choose(page, '#vehicle', vehicle);
+  await openSections();
+  const {median, late} = await sliding(key);
+  console.log(
+    `slider to picture, ${vehicle}, ${key}: median ${median.toFixed(1)} ms, 95 % within ${late.toFixed(1)} ms`,
+  );
+}
+await choose(page, '#vehicle', 'friction2022');
 
 // Tasks of the main thread while absurd values, a trend and a map are computed.
 await page.evaluate(() => {
@@ -56,8 +81,32 @@ for (const [vehicle, key, quantity] of [
 await choose(page, '#vehicle', 'friction2022');
 await compute(page);
 await compute(page, {up: 'transmission.crank_radius'});
+await page.click('#hover');
+await page.waitForSelector('body[data-hover]', {timeout: 120_000});
+await page.click('#glossary');
+await page.keyboard.press('Escape');
+await page.click('#share');
+await page.keyboard.press('Escape');
+await page.click('#sound');
+await page.click('#sound');
+const [x, y] = await page.evaluate(() => {
+  document.querySelector('#mechanism').scrollIntoView();
+  const {left, top} = document.querySelector('.grip[data-joint=tip]').getBoundingClientRect();
+  return [left + 14, top + 14];
+});
+await page.mouse.move(x, y);
+await page.mouse.down();
+for (let n = 1; n <= 40; ++n) await page.mouse.move(x - n, y, {steps: 2});
+await page.mouse.up();
 const tasks = await page.evaluate(() => window.tasks);
 console.log(`main thread: ${tasks.length} tasks above 50 ms, the longest ${Math.max(0, ...tasks)} ms`);
+await page.evaluate(() => window.tasks.splice(0));
+await page.click('#fly');
+await page.waitForSelector('#flight-view:not([hidden])');
+await page.waitForTimeout(1500);
+const flying = await page.evaluate(() => window.tasks);
+console.log(`3D opened: ${flying.length} tasks above 50 ms, the longest ${Math.max(0, ...flying)} ms`);
+await page.click('#fly');
 await page.selectOption('#up', '');
 
 const memory = async () => {

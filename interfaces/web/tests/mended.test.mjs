@@ -5,7 +5,7 @@ import {after, before, beforeEach, test} from 'node:test';
 import {join} from 'node:path';
 import {launch, open, root, serve} from './browser.mjs';
 import {run} from './program.mjs';
-import {choose, compute, field, fileOf, idle, numberIn, openAll, report, type} from './page_tools.mjs';
+import {answered, choose, compute, field, fileOf, idle, numberIn, openAll, report, type} from './page_tools.mjs';
 
 let server, browser, page, context;
 before(async () => {
@@ -272,6 +272,8 @@ test('8: no step of the tour is outside the domain without saying so; numbers of
   await page.click('#tour');
   for (let step = 1; step <= 6; ++step) {
     await page.waitForFunction((n) => document.body.dataset.tour === String(n), step);
+    assert.equal((await report(page)).domain, 'inside', `step ${step} as it asks`);
+    await answered(page, step);
     const {domain} = await report(page);
     const said = await text('#tour-panel');
     if (domain !== 'inside') assert.match(said, /outside/, `step ${step}`);

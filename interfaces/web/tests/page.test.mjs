@@ -7,7 +7,7 @@ import {join} from 'node:path';
 import {createRequire} from 'node:module';
 import {after, before, describe, test} from 'node:test';
 import {launch, open, serve, singleFile} from './browser.mjs';
-import {choose, compute, idle, openAll, report, type} from './page_tools.mjs';
+import {answered, choose, compute, idle, openAll, report, type} from './page_tools.mjs';
 import {run} from './program.mjs';
 
 const axe = createRequire(import.meta.url).resolve('axe-core/axe.min.js');
@@ -206,10 +206,12 @@ for (const [name, url] of [
       assert.equal(ours[0], theirs[0]);
     });
 
-    test('the tour of six steps', async () => {
+    test('the tour of six questions', async () => {
       await page.click('#tour');
       for (let step = 1; step <= 6; ++step) {
         await page.waitForFunction((n) => document.body.dataset.tour === String(n), step);
+        assert.doesNotMatch(await page.textContent('#tour-panel'), /NaN|undefined|–/);
+        await answered(page, step);
         assert.doesNotMatch(await page.textContent('#tour-panel'), /NaN|undefined|–/);
         if (step < 6) await page.getByRole('button', {name: 'next'}).click();
       }
@@ -226,7 +228,7 @@ for (const [name, url] of [
       });
       const wanted = await page.evaluate(
         () =>
-          [...document.querySelectorAll('button, select, input, summary')].filter(
+          [...document.querySelectorAll('button, select, input, summary, [role=slider]')].filter(
             (e) => !e.disabled && e.checkVisibility({visibilityProperty: true}),
           ).length,
       );
@@ -235,7 +237,7 @@ for (const [name, url] of [
         await page.evaluate(() => window.reached.add(document.activeElement));
       }
       const missed = await page.evaluate(() =>
-        [...document.querySelectorAll('button, select, input, summary')]
+        [...document.querySelectorAll('button, select, input, summary, [role=slider]')]
           .filter((e) => !e.disabled && e.checkVisibility({visibilityProperty: true}) && !window.reached.has(e))
           .map((e) => e.id || e.textContent),
       );

@@ -52,3 +52,9 @@ export function numberIn(text) {
   const prefix = unit.length > 1 ? {m: 1e-3, µ: 1e-6, k: 1e3}[unit[0]] : undefined;
   return Number(number) * (prefix ?? 1);
 }
+
+/** Asks for the answer of a step of the tour. */
+export async function answered(page, step) {
+  await page.getByRole('button', {name: 'show the answer'}).click();
+  await page.waitForFunction((n) => document.body.dataset.answered === String(n), step);
+}

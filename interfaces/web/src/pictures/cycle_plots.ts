@@ -50,7 +50,7 @@ interface Drawn {
   figure: HTMLElement;
   picture: SVGSVGElement;
   axes: SVGGElement;
-  curves: SVGGElement;
+  curves: SVGSVGElement;
   cursor: SVGLineElement;
   readout: SVGTextElement;
 }
@@ -69,7 +69,9 @@ export class CyclePlots {
   constructor(parent: HTMLElement, scrub: (share: number) => void) {
     this.drawn = panels.map((panel) => {
       const axes = svg('g'),
-        curves = svg('g');
+        area = {x: left, y: top, width: width - left - right, height: height - top - bottom},
+        // What a zoom leaves outside is cut off.
+        curves = svg('svg', {...area, viewBox: `${area.x} ${area.y} ${area.width} ${area.height}`});
       const cursor = svg('line', {class: 'cursor', y1: top, y2: height - bottom, x1: left, x2: left});
       const readout = svg('text', {class: 'readout', x: width - right, y: 14, 'text-anchor': 'end'});
       const picture = svg(
@@ -116,6 +118,7 @@ export class CyclePlots {
     abscissa: Abscissa,
     forceName: string,
     measured: Matched | null = null,
+    residuals = false,
   ) {
     this.columns = columns;
     this.abscissa = abscissa;
@@ -130,7 +133,10 @@ export class CyclePlots {
         d.readout.textContent = d.panel.title;
         continue;
       }
-      this.drawPanel(d, columns, ghost, shown, d.panel.id === 'force' ? forceName : d.panel.title, measured);
+      const title = d.panel.id === 'force' ? forceName : d.panel.title;
+      const compared = measured ? shown.filter(([name]) => measured.columns[name]) : [];
+      if (measured && residuals && compared.length > 0) this.drawResiduals(d, columns, compared, title, measured);
+      else this.drawPanel(d, columns, ghost, shown, title, measured);
     }
     this.showCursor();
   }
@@ -152,9 +158,9 @@ export class CyclePlots {
       [height - bottom, top],
     ).nice(4);
     const along = this.abscissaOf(columns);
-    const x = scaleLinear([0, along.end], [left, width - right]);
+    const x = this.across(along.end);
     numbersBeside(d.axes, frame, y, 4, true);
-    numbersBelow(d.axes, frame, x, this.abscissa === 'time' ? x.ticks(5) : [0, 90, 180, 270, 360], 12);
+    numbersBelow(d.axes, frame, x, this.ticks(x), 12);
     d.axes.append(
       svg('text', {x: left, y: 14, class: 'title'}, `${title}, ${shownUnit(scale.unit)}`),
       ...(shown.length > 1 ? [legend(shown)] : []),
@@ -184,6 +190,63 @@ export class CyclePlots {
     });
   }
 
+  /** What is measured minus what the model has there. */
+  private drawResiduals(d: Drawn, columns: Columns, shown: [string, string][], title: string, measured: Matched) {
+    const residuals = shown.map(([name]) =>
+      measured.columns[name]!.map((v, row) => v - atShare(columns[name]!, measured.shares[row]!)),
+    );
+    const [low, high] = extent(...residuals) ?? [0, 0];
+    const scale = scaleFor(Math.max(Math.abs(low), Math.abs(high)), d.panel.unit);
+    const y = scaleLinear(
+      [Math.min(0, low) * scale.factor, Math.max(0, high) * scale.factor],
+      [height - bottom, top],
+    ).nice(4);
+    const along = this.abscissaOf(columns);
+    const x = this.across(along.end);
+    numbersBeside(d.axes, frame, y, 4, true);
+    numbersBelow(d.axes, frame, x, this.ticks(x), 12);
+    d.axes.append(
+      svg('text', {x: left, y: 14, class: 'title'}, `${title}, measured − model, ${shownUnit(scale.unit)}`),
+      ...(shown.length > 1 ? [legend(shown)] : []),
+      svg('text', {x: width - right, y: height - 2, 'text-anchor': 'end'}, along.name),
+    );
+    shown.forEach((_, n) => {
+      let marks = '';
+      residuals[n]!.forEach((v, row) => {
+        const at = atShare(along.numbers, measured.shares[row]!);
+        if (!Number.isFinite(v) || !Number.isFinite(at)) return;
+        marks += `M${x(at).toFixed(1)},${y(0).toFixed(1)}V${y(v * scale.factor).toFixed(1)}`;
+      });
+      d.curves.append(svg('path', {class: `residual series-${n}`, d: marks}));
+    });
+  }
+
+  /** The part of the horizontal axis that is shown, 0 to 1. */
+  private part: [number, number] = [0, 1];
+
+  /** Shows a part of the cycle around the cursor, `factor` times as wide; 1 is the whole cycle. */
+  zoom(factor: number) {
+    const columns = this.columns;
+    const row = columns ? Math.round(this.place * (columns.time_s!.length - 1)) : 0;
+    const along = columns ? this.abscissaOf(columns) : null;
+    const centre = along ? along.numbers[row]! / along.end : 0.5,
+      from = Math.min(1 - 1 / factor, Math.max(0, centre - 0.5 / factor));
+    this.part = [from, from + 1 / factor];
+  }
+
+  private across(end: number) {
+    return scaleLinear([this.part[0] * end, this.part[1] * end], [left, width - right]);
+  }
+
+  private ticks(x: ReturnType<CyclePlots['across']>): number[] {
+    if (this.abscissa === 'time') return x.ticks(5);
+    const step = this.part[1] - this.part[0] > 0.6 ? 90 : this.part[1] - this.part[0] > 0.2 ? 30 : 15;
+    const [first, last] = x.domain() as [number, number];
+    return Array.from({length: 360 / step + 1}, (_, n) => step * n).filter(
+      (a) => a >= first - 1e-9 && a <= last + 1e-9,
+    );
+  }
+
   private abscissaOf(columns: Columns) {
     const time = this.abscissa === 'time';
     const factor = time ? 1e3 : 180 / Math.PI;
@@ -192,7 +255,8 @@ export class CyclePlots {
   }
 
   /** The share of the cycle in time at a share of the horizontal axis. */
-  private shareAt(along: number): number {
+  private shareAt(place: number): number {
+    const along = this.part[0] + place * (this.part[1] - this.part[0]);
     if (!this.columns || this.abscissa === 'time') return along;
     const angles = this.columns.crank_angle_rad!;
     let row = 0;
@@ -216,10 +280,16 @@ export class CyclePlots {
     if (!columns) return;
     const row = Math.round((this.reading ?? this.place) * (columns.time_s!.length - 1));
     const along = this.abscissaOf(columns);
-    const x = left + ((width - left - right) * along.numbers[row]!) / along.end;
+    const x = this.across(along.end)(along.numbers[row]!),
+      inside = x >= left - 0.5 && x <= width - right + 0.5;
     for (const d of this.drawn) {
       if (d.figure.hidden) continue;
       set(d.cursor, {x1: x, x2: x});
+      d.cursor.toggleAttribute('hidden', !inside);
+      if (d.curves.querySelector('.residual')) {
+        d.readout.replaceChildren();
+        continue;
+      }
       const parts = d.panel.columns
         .filter(([name]) => finite(columns[name]))
         .map(([name], n) => {

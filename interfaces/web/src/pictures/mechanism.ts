@@ -3,7 +3,7 @@ import type {Columns, Mechanism} from '../core';
 import {svg} from '../dom';
 import {readable} from '../quantities';
 
-type Point = [number, number];
+export type Point = [number, number];
 
 /** What is shown at one instant; forces as shares of the cycle's peaks, -1 to 1. */
 export interface Instant {
@@ -23,8 +23,18 @@ export interface Rest {
   text: string;
 }
 
-const width = 480,
+export const width = 480,
   height = 360;
+
+/** From metres, y upwards, to the picture, and back. */
+export const placeIn = ({centre, scale}: Room, [x, y]: Point): Point => [
+  width / 2 + (x - centre[0]) * scale,
+  height / 2 - (y - centre[1]) * scale,
+];
+export const pointOf = ({centre, scale}: Room, [x, y]: Point): Point => [
+  centre[0] + (x - width / 2) / scale,
+  centre[1] - (y - height / 2) / scale,
+];
 
 const onCircle = (centre: Point, radius: number, angle: number): Point => [
   centre[0] + radius * Math.cos(angle),
@@ -34,12 +44,12 @@ const onCircle = (centre: Point, radius: number, angle: number): Point => [
 /** Lines in metres, y upwards, drawn into a picture whose extent is known beforehand. */
 class Sketch {
   readonly group = svg('g');
-  constructor(
-    private readonly centre: Point,
-    readonly scale: number,
-  ) {}
-  at([x, y]: Point): Point {
-    return [width / 2 + (x - this.centre[0]) * this.scale, height / 2 - (y - this.centre[1]) * this.scale];
+  readonly scale: number;
+  constructor(private readonly room: Room) {
+    this.scale = room.scale;
+  }
+  at(p: Point): Point {
+    return placeIn(this.room, p);
   }
   line(a: Point, b: Point, kind: string, opacity = 1) {
     const [x1, y1] = this.at(a),
@@ -147,12 +157,35 @@ function strokeEnds(m: Mechanism, range: [number, number]): number[] {
   );
 }
 
-/** A sketch in which all that moves has room. */
-function roomFor(m: Mechanism, ends: number[], crank: number): Sketch {
+/** Where joints are; the wings are drawn `wing` times as long as the library places their tips. */
+function jointsAt(m: Mechanism, angle: number, wing: number): (name: string) => Point {
+  return (name) => {
+    const p = jointAt(m, name, angle);
+    const root = m.links.find((l) => l.role === 'wing' && l.to === name)?.from;
+    return root === undefined ? p : between(jointAt(m, root, angle), p, wing);
+  };
+}
+
+const crankOf = (m: Mechanism, angle: number) => {
+  if (!m.joints.some((j) => j.name === 'pin')) return 0;
+  const [axis, pin] = [jointAt(m, 'axis', angle), jointAt(m, 'pin', angle)];
+  return Math.hypot(pin[0] - axis[0], pin[1] - axis[1]);
+};
+
+/** The part of the plane that a picture shows. */
+export interface Room {
+  readonly centre: Point;
+  readonly scale: number; // [pixels/m]
+}
+
+/** Room for all that moves. */
+export function roomFor(m: Mechanism, range: [number, number], wing: number): Room {
+  const ends = strokeEnds(m, range),
+    crank = crankOf(m, 0);
   const turn = Array.from({length: 45}, (_, n) =>
     m.rotates ? (2 * Math.PI * n) / 45 : between([ends[0]!, 0], [ends[1]!, 0], n / 44)[0],
   );
-  const points = m.joints.flatMap((j) => turn.map((angle) => jointAt(m, j.name, angle)));
+  const points = turn.flatMap((angle) => m.joints.map((j) => jointsAt(m, angle, wing)(j.name)));
   const x = points.map((p) => p[0]),
     y = points.map((p) => p[1]);
   const high = Math.max(...y, 1.2 * crank),
@@ -160,20 +193,22 @@ function roomFor(m: Mechanism, ends: number[], crank: number): Sketch {
     left = Math.min(...x, -1.2 * crank),
     right = Math.max(...x);
   // A single wing has its motor or its table's crank beside it.
-  const size = m.links.some((l) => l.role === 'rod') ? 0 : 2.4;
+  const size = hasRod(m) ? 0 : 2.4;
   const scale = Math.min((width - 110) / Math.max(right - left, size), (height - 80) / Math.max(high - low, size));
-  return new Sketch([(left + right) / 2, (low + high) / 2], scale);
+  return {centre: [(left + right) / 2, (low + high) / 2], scale};
 }
 
-function sketchOf(m: Mechanism, i: Instant, range: [number, number], names: boolean): Sketch {
+export const hasRod = (m: Mechanism) => m.links.some((l) => l.role === 'rod');
+
+function sketchOf({mechanism: m, wing, room}: Drawn, i: Instant, range: [number, number], names: boolean): Sketch {
   const angle = m.rotates ? i.crankAngle : i.strokeAngle,
     ends = strokeEnds(m, range);
-  const at = (name: string) => jointAt(m, name, angle);
+  const at = jointsAt(m, angle, wing);
   const turns = m.joints.some((j) => j.name === 'pin'),
     axis: Point = turns ? at('axis') : at('hinge'),
     pin = turns ? at('pin') : null,
-    crank = pin ? Math.hypot(pin[0] - axis[0], pin[1] - axis[1]) : 0;
-  const s = roomFor(m, ends, crank);
+    crank = crankOf(m, angle);
+  const s = new Sketch(room);
   const labels: (() => void)[] = [];
   const label = (...text: Parameters<Sketch['name']>) => labels.push(() => s.name(...text));
   if (pin) {
@@ -190,7 +225,7 @@ function sketchOf(m: Mechanism, i: Instant, range: [number, number], names: bool
     const a = at(from),
       b = at(to);
     if (role === 'wing') {
-      for (const end of ends) s.line(a, jointAt(m, to, end), 'faint');
+      for (const end of ends) s.line(a, jointsAt(m, end, wing)(to), 'faint');
       if (m.springs) s.spring(a);
       s.arrow(between(a, b, 0.7), 0, -55 * i.lift, 'lift');
       if (to === 'tip') label('wing', b, 'end', -6, -10);
@@ -234,22 +269,33 @@ function chord(i: Instant): SVGGElement {
   return group;
 }
 
+/** A mechanism and how it is drawn. */
+export interface Drawn {
+  mechanism: Mechanism;
+  wing: number;
+  room: Room;
+}
+
+/** Where the joints are in the plane at an instant. */
+export const jointsOf = ({mechanism, wing}: Drawn, i: Instant) =>
+  jointsAt(mechanism, mechanism.rotates ? i.crankAngle : i.strokeAngle, wing);
+
 export function drawMechanism(
   picture: SVGSVGElement,
-  m: Mechanism,
+  shown: Drawn,
   i: Instant,
   range: [number, number],
-  ghost: {mechanism: Mechanism; instant: Instant} | null,
+  ghost: (Drawn & {instant: Instant}) | null,
   rest: Rest | null,
 ) {
   picture.setAttribute('viewBox', `0 0 ${width} ${height}`);
   const parts: SVGElement[] = [];
   if (ghost) {
-    const {group} = sketchOf(ghost.mechanism, ghost.instant, [0, 0], false);
+    const {group} = sketchOf(ghost, ghost.instant, [0, 0], false);
     group.setAttribute('class', 'ghost');
     parts.push(group);
   }
-  parts.push(sketchOf(m, i, range, true).group, chord(i));
+  parts.push(sketchOf(shown, i, range, true).group, chord(i));
   if (rest) {
     parts.push(
       svg(

@@ -13,6 +13,17 @@ interface Flow {
   target: number;
   value: number;
   kind: string;
+  /** What it has of the balance. */
+  part: Part;
+}
+export type Part = keyof Balance | 'motor';
+/** A flow as it is drawn. */
+export interface DrawnFlow {
+  part: Part;
+  mean: number; // [W]
+  width: number;
+  d: string;
+  kind: string;
 }
 
 const height = 270;
@@ -24,31 +35,32 @@ function network(b: Balance): {nodes: Place[]; links: Flow[]} {
     links: Flow[] = [];
   const least = 1e-3 * b.electrical;
   const add = (name: string, kind: string) => nodes.push({name, kind}) - 1;
-  const flow = (source: number, target: number, value: number, kind: string) =>
-    links.push({source, target, value, kind});
+  const flow = (source: number, target: number, value: number, kind: string, part: Part) =>
+    links.push({source, target, value, kind, part});
   const supply = add('supply', 'input'),
     motor = add('motor', 'station');
-  if (b.electronics > least) flow(supply, add('electronics', 'loss'), b.electronics, 'electronics');
+  if (b.electronics > least) flow(supply, add('electronics', 'loss'), b.electronics, 'electronics', 'electronics');
   const taken = b.electrical - Math.max(b.electronics, 0);
-  flow(supply, motor, taken, 'useful');
-  if (b.copper > least) flow(motor, add('copper loss', 'loss'), b.copper, 'copper');
-  if (b.viscous > least) flow(motor, add('motor viscous loss', 'loss'), b.viscous, 'viscous');
-  if (b.motor_friction > least) flow(motor, add('motor friction', 'loss'), b.motor_friction, 'friction');
+  flow(supply, motor, taken, 'useful', 'electrical');
+  if (b.copper > least) flow(motor, add('copper loss', 'loss'), b.copper, 'copper', 'copper');
+  if (b.viscous > least) flow(motor, add('motor viscous loss', 'loss'), b.viscous, 'viscous', 'viscous');
+  if (b.motor_friction > least)
+    flow(motor, add('motor friction', 'loss'), b.motor_friction, 'friction', 'motor_friction');
   const onward = taken - Math.max(b.copper, 0) - Math.max(b.viscous, 0) - Math.max(b.motor_friction, 0);
   if (!(onward > least)) return {nodes, links};
   const mechanism = add('mechanism', 'station');
-  flow(motor, mechanism, onward, 'useful');
-  if (b.gear > least) flow(mechanism, add('gear loss', 'loss'), b.gear, 'gear');
-  if (b.friction > least) flow(mechanism, add('friction', 'loss'), b.friction, 'friction');
-  if (b.hinge > least) flow(mechanism, add('pitch hinges', 'loss'), b.hinge, 'hinge');
-  if (b.residual > least) flow(mechanism, add('formulation residual', 'loss'), b.residual, 'residual');
-  if (b.residual < -least) flow(add('formulation residual', 'input'), mechanism, -b.residual, 'residual');
-  if (b.aerodynamic > least) flow(mechanism, add('air', 'useful'), b.aerodynamic, 'aerodynamic');
+  flow(motor, mechanism, onward, 'useful', 'motor');
+  if (b.gear > least) flow(mechanism, add('gear loss', 'loss'), b.gear, 'gear', 'gear');
+  if (b.friction > least) flow(mechanism, add('friction', 'loss'), b.friction, 'friction', 'friction');
+  if (b.hinge > least) flow(mechanism, add('pitch hinges', 'loss'), b.hinge, 'hinge', 'hinge');
+  if (b.residual > least) flow(mechanism, add('formulation residual', 'loss'), b.residual, 'residual', 'residual');
+  if (b.residual < -least) flow(add('formulation residual', 'input'), mechanism, -b.residual, 'residual', 'residual');
+  if (b.aerodynamic > least) flow(mechanism, add('air', 'useful'), b.aerodynamic, 'aerodynamic', 'aerodynamic');
   return {nodes, links};
 }
 
-/** `room` is what the page has for the picture [px]: letters keep their size. */
-export function drawSankey(picture: SVGSVGElement, balance: Balance | null, room: number) {
+/** `room` is what the page has for the picture [px]: letters keep their size. Returns the flows. */
+export function drawSankey(picture: SVGSVGElement, balance: Balance | null, room: number): DrawnFlow[] {
   const width = Math.max(330, Math.min(720, room || 640));
   picture.setAttribute('viewBox', `0 0 ${width} ${height}`);
   picture.replaceChildren();
@@ -56,7 +68,7 @@ export function drawSankey(picture: SVGSVGElement, balance: Balance | null, room
     picture.append(
       svg('text', {x: width / 2, y: height / 2, 'text-anchor': 'middle', class: 'nothing'}, 'no steady cycle'),
     );
-    return;
+    return [];
   }
   const layout = sankey<Place, Flow>()
     .nodeWidth(10)
@@ -66,17 +78,13 @@ export function drawSankey(picture: SVGSVGElement, balance: Balance | null, room
       [width - (width < 500 ? 196 : 290), height - 12],
     ]);
   const {nodes, links} = layout(network(balance));
-  for (const link of links) {
+  const flows = links.map(({part, value, width: thick, kind}, n) => {
+    const d = sankeyLinkHorizontal()(links[n]!) ?? '';
+    return {part, mean: value, width: Math.max(1, thick ?? 0), d, kind};
+  });
+  for (const {kind, d, width: thick, mean} of flows) {
     picture.append(
-      svg(
-        'path',
-        {
-          class: `flow flow-${link.kind}`,
-          d: sankeyLinkHorizontal()(link) ?? '',
-          'stroke-width': Math.max(1, link.width ?? 0),
-        },
-        svg('title', {}, `${readable(link.value, 'W')}`),
-      ),
+      svg('path', {class: `flow flow-${kind}`, d, 'stroke-width': thick}, svg('title', {}, `${readable(mean, 'W')}`)),
     );
   }
   for (const node of nodes) {
@@ -96,6 +104,7 @@ export function drawSankey(picture: SVGSVGElement, balance: Balance | null, room
         : svg('text', {x: x1 + 6, y: (y0 + y1) / 2 + 4}, label),
     );
   }
+  return flows;
 }
 
 /** In a narrow picture a station's name ends where it does, for those of the losses begin close by. */
