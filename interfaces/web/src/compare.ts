@@ -1,6 +1,6 @@
 // Pinned designs beside the present one: several of them, each to be swapped with it or forgotten.
 import {byId, html} from './dom';
-import type {Explorer} from './explorer';
+import type {Explorer, Shown} from './explorer';
 import {paperTable} from './paper_table';
 import {showMetrics} from './results';
 import {describeDesign, maxPins} from './state';
@@ -9,6 +9,7 @@ export const pinName = (n: number) => String.fromCharCode(65 + n);
 
 export class Compare {
   private listed = '';
+  private tabled: Shown | null = null;
 
   constructor(private readonly explorer: Explorer) {
     byId('pin').addEventListener('click', () => {
@@ -31,7 +32,8 @@ export class Compare {
       : `pin this design as ${pinName(state.pins.length)}`;
     byId('unpin').hidden = state.pins.length < 2;
     this.list();
-    if (shown) {
+    if (shown && shown !== this.tabled) {
+      this.tabled = shown;
       const pins = shown.pins.map((pin, n) => ({name: pinName(n), report: pin.solved.report}));
       const paper = paperTable(explorer);
       byId('paper-values').replaceChildren(...(paper ? [paper] : []));

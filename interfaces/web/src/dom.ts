@@ -39,3 +39,39 @@ export function byId<T extends HTMLElement>(id: string): T {
   if (!found) throw new Error(`the page has no #${id}`);
   return found as T;
 }
+
+/**
+ * Makes the children of an element equal to others, which are used up. What stays as it is is not touched, so that
+ * the browser styles, lays out and paints only what changes. Not for elements with listeners, which are not compared.
+ */
+export function update(element: Element, children: Iterable<Node>) {
+  let old = element.firstChild;
+  for (const child of [...children]) {
+    const next: ChildNode | null = old?.nextSibling ?? null;
+    if (!old) element.append(child);
+    else if (old.nodeName !== child.nodeName) old.replaceWith(child);
+    else if (old instanceof Element) updateElement(old, child as Element);
+    else if (old.nodeValue !== child.nodeValue) old.nodeValue = child.nodeValue;
+    old = next;
+  }
+  while (old) {
+    const next: ChildNode | null = old.nextSibling;
+    old.remove();
+    old = next;
+  }
+}
+
+/** The group of this class in a picture, made where there is none. */
+export function layerOf(picture: SVGSVGElement, name: string): SVGGElement {
+  const known = picture.querySelector<SVGGElement>(`:scope > g.${name}`);
+  if (known) return known;
+  const layer = svg('g', {class: name});
+  picture.append(layer);
+  return layer;
+}
+
+function updateElement(old: Element, wanted: Element) {
+  for (const {name} of [...old.attributes]) if (!wanted.hasAttribute(name)) old.removeAttribute(name);
+  for (const {name, value} of wanted.attributes) if (old.getAttribute(name) !== value) old.setAttribute(name, value);
+  update(old, wanted.childNodes);
+}

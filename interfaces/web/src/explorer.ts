@@ -46,12 +46,15 @@ export class Explorer {
   /** The largest value of each number among the vehicles of the page: a scale for keys that are 0 in one of them. */
   readonly typical: Readonly<Record<string, number>>;
   work: Work = 'solving';
+  /** When the state was taken, as performance.now(). */
+  asked = 0;
   /** Why the state has no results, where work is "failed". */
   failure = '';
   private readonly solver: Channel;
   private readonly slopes: Channel;
   private readonly flights: Channel;
   private readonly cache = new Map<string, Computed>();
+  private readonly bases = new Map<string, Values>();
   private readonly listeners: (() => void)[] = [];
   private readonly visited = new Map<number, State>();
   private written = 0;
@@ -103,7 +106,7 @@ export class Explorer {
     let values, base;
     try {
       values = this.core.values(state.design);
-      base = this.core.values({text: state.design.text, changes: {}});
+      base = this.baseOf(state.design.text);
       for (const pin of state.pins) this.core.values(pin);
     } catch (error) {
       this.refuse(error, origin);
@@ -121,6 +124,15 @@ export class Explorer {
     this.say('');
     this.controls.show(state.design, values, base);
     return this.solve(origin, final && !keepAddress);
+  }
+
+  /** The values of a vehicle file itself. */
+  baseOf(text: string): Values {
+    const known = this.bases.get(text);
+    if (known) return known;
+    const base = this.core.values({text, changes: {}});
+    this.bases.set(text, base);
+    return base;
   }
 
   /** Why the library refuses a state; nothing where it takes it. */
@@ -210,6 +222,7 @@ export class Explorer {
     const wanted = [state.design, ...state.pins];
     const missing = wanted.filter((design) => !this.cache.has(identityOf(design, options)));
     this.work = 'solving';
+    this.asked = performance.now();
     clearTimeout(this.settle);
     this.notify();
     if (missing.length) {
@@ -321,7 +334,9 @@ export class Explorer {
     if (found.kind !== 'done') return;
     report.hover_s = found.answer.hover_s;
     report.endurance_s = found.answer.endurance_s;
-    if (this.shown === shown) this.notify();
+    if (this.shown !== shown) return;
+    this.shown = {...shown}; // its report says more now
+    this.notify();
   }
 
   /** A step of the history is a step of the browser's too, so that Back undoes it. */

@@ -1,6 +1,6 @@
 // Numbers: the headline, the table of all metrics beside those of a pinned design, the energy balance.
 import type {Balance, Quantity, Report, Solved} from './core';
-import {html} from './dom';
+import {html, update} from './dom';
 import {balanceRows} from './pictures/sankey';
 import {digits, readable} from './quantities';
 
@@ -23,16 +23,26 @@ export const numberOf = (report: Report | null | undefined, key: string) => {
 /** Less than this share of the largest quantity of its kind is rounding: solutions are accurate to 1e-6. */
 const rounding = 1e-9;
 const kinds = [/^power_/, /^current_/, /^lift_(mean|peak)/];
+/** The largest magnitude of each kind in a report. */
+const largest = new WeakMap<Report, number[]>();
+
+function largestOf(report: Report): number[] {
+  const known = largest.get(report);
+  if (known) return known;
+  const keys = Object.keys(report);
+  const found = kinds.map((kind) =>
+    Math.max(0, ...keys.filter((key) => kind.test(key)).map((key) => Math.abs(numberOf(report, key) ?? 0))),
+  );
+  largest.set(report, found);
+  return found;
+}
 
 /** numberOf() with 0 in place of what is left of a mean that vanishes, such as the current of a direct drive. */
 export function significant(report: Report | null | undefined, key: string): number | null {
   const value = numberOf(report, key),
-    kind = kinds.find((k) => k.test(key));
-  if (!report || value === null || !kind) return value;
-  const sizes = Object.keys(report)
-    .filter((other) => kind.test(other))
-    .map((other) => Math.abs(numberOf(report, other) ?? 0));
-  return Math.abs(value) < rounding * Math.max(...sizes) ? 0 : value;
+    kind = kinds.findIndex((k) => k.test(key));
+  if (!report || value === null || kind < 0) return value;
+  return Math.abs(value) < rounding * largestOf(report)[kind]! ? 0 : value;
 }
 
 export function showHeadline(parent: HTMLElement, solved: Solved, metrics: Quantity[]) {
@@ -74,13 +84,13 @@ export function showHeadline(parent: HTMLElement, solved: Solved, metrics: Quant
       ),
     );
   }
-  parent.replaceChildren(...parts, list);
+  update(parent, [...parts, list]);
 }
 
 export function showBalance(table: HTMLTableElement, balance: Balance | null) {
-  table.replaceChildren(html('caption', {}, 'energy balance, mean over a cycle'));
+  const rows: Node[] = [html('caption', {}, 'energy balance, mean over a cycle')];
   for (const [name, value, share] of balance ? balanceRows(balance) : []) {
-    table.append(
+    rows.push(
       html(
         'tr',
         {},
@@ -90,6 +100,7 @@ export function showBalance(table: HTMLTableElement, balance: Balance | null) {
       ),
     );
   }
+  update(table, rows);
 }
 
 /** Every metric; beside those of pinned designs where there are some, with the difference to the first of them. */
@@ -118,10 +129,8 @@ export function showMetrics(
       ),
     );
   }
-  table.replaceChildren(
-    html('thead', {}, html('tr', {}, ...head.map((text) => html('th', {scope: 'col'}, text)))),
-    body,
-  );
+  const columns = head.map((text) => html('th', {scope: 'col'}, text));
+  update(table, [html('thead', {}, html('tr', {}, ...columns)), body]);
 }
 
 function difference(from: number | null, to: number | null): HTMLElement {

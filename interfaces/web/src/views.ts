@@ -1,6 +1,6 @@
 // What the page shows of results: headline, mechanism, flows, cycle, tables. Each is of the state of explorer.shown;
 // where that is not the state of the page, the page says so.
-import type {Columns, Mechanism, Values} from './core';
+import type {Columns, Mechanism} from './core';
 import {byId, html} from './dom';
 import type {Explorer, Shown} from './explorer';
 import {type Abscissa, CyclePlots} from './pictures/cycle_plots';
@@ -18,6 +18,8 @@ import type {Computed} from './worker';
 
 /** [ms] that a computation may take before the page says that it runs. */
 const unnoticed = 250;
+/** [ms] after a change within which most vehicles are drawn anew. */
+const soon = 80;
 
 const describe = (state: State) =>
   describeDesign(state.design, state.condition) +
@@ -38,7 +40,6 @@ export class Views {
   private readonly flow: LiveFlow;
   private picture: drawn.Drawn | null = null;
   private ghostPicture: drawn.Drawn | null = null;
-  private readonly bases = new Map<string, Values>();
   /** Called with what is measured, or null when that is taken away. */
   measuredChanged: (measured: Measured | null) => void = () => {};
   /** Others that follow the instant that the page shows. */
@@ -58,6 +59,7 @@ export class Views {
       () => this.period(),
       (share) => this.drawInstant(share),
       () => this.hasCycle(),
+      () => explorer.work === 'solving' && performance.now() - explorer.asked < soon,
     );
     explorer.watch(() => this.update());
   }
@@ -144,9 +146,7 @@ export class Views {
   }
 
   private drawnAs({mechanism, values}: Computed, text: string, range: [number, number]): drawn.Drawn {
-    let base = this.bases.get(text);
-    if (!base) this.bases.set(text, (base = this.explorer.core.values({text, changes: {}})));
-    const wing = drawnWing(values, base);
+    const wing = drawnWing(values, this.explorer.baseOf(text));
     return {mechanism, wing, room: drawn.roomFor(mechanism, range, wing)};
   }
 

@@ -1,8 +1,9 @@
 // One state with a history; solving that can be ended, and a page that answers meanwhile.
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
+import {open} from './browser.mjs';
 import {designs, sequence} from './designs.mjs';
-import {done, page} from './page_each.mjs';
+import {browser, done, page, server} from './page_each.mjs';
 import {choose, compute, field, idle, openAll, report, type} from './page_tools.mjs';
 import {answer} from './program.mjs';
 
@@ -207,6 +208,72 @@ test('every vehicle and random edits give the numbers of the program', {timeout:
   }
   assert.ok(refused <= 0.1 * list.length);
   assert.ok(ended <= 0.02 * list.length);
+  await done();
+});
+
+test('a change touches only what it changes in numbers and pictures', async () => {
+  const kept = await page.evaluate(async () => {
+    const {explorer} = window;
+    const first = () => [
+      document.querySelector('#value-lift_mean_n'),
+      ...document.querySelectorAll('#balance td, #metrics th, #sankey text, #mechanism text, #plot-lift .curve'),
+    ];
+    const before = first(),
+      texts = before.map((e) => e.textContent);
+    await explorer.change({'supply.voltage': '3.05 V'}, {final: false});
+    const after = first();
+    return {
+      same: after.filter((e, n) => e === before[n]).length,
+      changed: after.filter((e, n) => e.textContent !== texts[n]).length,
+      count: before.length,
+      lift: texts[0],
+    };
+  });
+  assert.ok(kept.count > 40);
+  assert.equal(kept.same, kept.count);
+  assert.ok(kept.changed > 10);
+  const {lift_mean_n} = await report(page);
+  const [shown] = (await page.textContent('#value-lift_mean_n')).split(' ');
+  assert.ok(Math.abs(Number(shown) / (1e3 * lift_mean_n) - 1) < 1e-3 && kept.lift !== `${shown} mN`);
+  await done();
+});
+
+test('the mechanism moves on while a slider moves and while a design takes long', async () => {
+  const moving = await open(browser, server.url);
+  const seen = await moving.page.evaluate(async () => {
+    const {explorer} = window,
+      {views} = explorer,
+      mechanism = document.querySelector('#mechanism');
+    const shares = new Set();
+    for (let n = 0; n < 20; ++n) {
+      await explorer.change({'supply.voltage': String(2.9 + 0.01 * n)}, {final: false});
+      shares.add(views.playback.share);
+    }
+    // As if nothing came for half a second.
+    explorer.work = 'solving';
+    explorer.asked = performance.now();
+    const drawn = new Set();
+    for (const end = performance.now() + 500; performance.now() < end;) {
+      await new Promise(requestAnimationFrame);
+      drawn.add(mechanism.innerHTML);
+    }
+    explorer.work = 'solved';
+    return {shares: shares.size, drawn: drawn.size};
+  });
+  assert.ok(seen.shares > 10, String(seen.shares));
+  assert.ok(seen.drawn > 3, String(seen.drawn));
+  assert.deepEqual(moving.problems, []);
+  await moving.context.close();
+  await done();
+});
+
+test('the endurance, which takes longer than the cycle, comes into the table of metrics', async () => {
+  await choose(page, '#vehicle', 'friction2022-battery');
+  const row = page.locator('#metrics tr:has([title="endurance_s"]) td');
+  await row.waitFor({state: 'attached', timeout: 60_000});
+  const {endurance_s} = await report(page);
+  assert.ok(endurance_s > 0);
+  assert.match(await row.textContent(), /(s|min|h)$/);
   await done();
 });
 

@@ -2,7 +2,7 @@
 import {scaleLinear} from 'd3-scale';
 import {line} from 'd3-shape';
 import type {Columns} from '../core';
-import {html, set, svg} from '../dom';
+import {html, set, svg, update} from '../dom';
 import {digits, scaleFor, shownUnit, withMinus} from '../quantities';
 import {atShare, type Matched} from '../measured';
 import {extent, type Frame, numbersBelow, numbersBeside, placeOf, sayNothing} from './axes';
@@ -45,12 +45,15 @@ export type Abscissa = 'time' | 'crank angle';
 const frame: Frame = {width: 420, height: 150, left: 52, right: 8, top: 22, bottom: 32};
 const {width, height, left, right, top, bottom} = frame;
 
-interface Drawn {
+/** What of a panel follows the design. */
+interface Parts {
   panel: Panel;
+  axes: SVGElement;
+  curves: SVGElement;
+}
+interface Drawn extends Parts {
   figure: HTMLElement;
   picture: SVGSVGElement;
-  axes: SVGGElement;
-  curves: SVGSVGElement;
   cursor: SVGLineElement;
   readout: SVGTextElement;
 }
@@ -125,24 +128,27 @@ export class CyclePlots {
     for (const d of this.drawn) {
       const shown = d.panel.columns.filter(([name]) => columns && finite(columns[name]));
       d.figure.hidden = columns !== null && shown.length === 0;
-      d.axes.replaceChildren();
-      d.curves.replaceChildren();
       d.cursor.toggleAttribute('hidden', !columns);
+      const next = {panel: d.panel, axes: svg('g'), curves: svg('g')};
       if (!columns || shown.length === 0) {
-        sayNothing(d.curves, frame, 'no steady cycle');
+        sayNothing(next.curves, frame, 'no steady cycle');
+        update(d.axes, []);
+        update(d.curves, next.curves.childNodes);
         d.readout.textContent = d.panel.title;
         continue;
       }
       const title = d.panel.id === 'force' ? forceName : d.panel.title;
       const compared = measured ? shown.filter(([name]) => measured.columns[name]) : [];
-      if (measured && residuals && compared.length > 0) this.drawResiduals(d, columns, compared, title, measured);
-      else this.drawPanel(d, columns, ghost, shown, title, measured);
+      if (measured && residuals && compared.length > 0) this.drawResiduals(next, columns, compared, title, measured);
+      else this.drawPanel(next, columns, ghost, shown, title, measured);
+      update(d.axes, next.axes.childNodes);
+      update(d.curves, next.curves.childNodes);
     }
     this.showCursor();
   }
 
   private drawPanel(
-    d: Drawn,
+    d: Parts,
     columns: Columns,
     ghost: Columns | null,
     shown: [string, string][],
@@ -191,7 +197,7 @@ export class CyclePlots {
   }
 
   /** What is measured minus what the model has there. */
-  private drawResiduals(d: Drawn, columns: Columns, shown: [string, string][], title: string, measured: Matched) {
+  private drawResiduals(d: Parts, columns: Columns, shown: [string, string][], title: string, measured: Matched) {
     const residuals = shown.map(([name]) =>
       measured.columns[name]!.map((v, row) => v - atShare(columns[name]!, measured.shares[row]!)),
     );
@@ -301,7 +307,7 @@ export class CyclePlots {
             `${withMinus(digits(value * scale.factor, 3))} ${shownUnit(scale.unit)}`,
           );
         });
-      d.readout.replaceChildren(...parts);
+      update(d.readout, parts);
     }
   }
 }

@@ -1,7 +1,7 @@
 // The powers at one instant over the mean flows: each flow is as wide as its power, and marks move along it by the
 // energy that has passed. What the moving parts and springs take up or give back is stated below.
 import type {Balance, Columns, Values} from '../core';
-import {set, svg} from '../dom';
+import {layerOf, set, svg, update} from '../dom';
 import {readable} from '../quantities';
 import type {DrawnFlow, Part} from './sankey';
 
@@ -79,21 +79,30 @@ export class LiveFlow {
   set(flows: DrawnFlow[], balance: Balance | null, columns: Columns | null, values: Values) {
     this.live = [];
     this.stored = this.note = null;
-    if (!columns || !balance || flows.length === 0) return;
+    const layer = layerOf(this.picture, 'moving'),
+      drawn: SVGElement[] = [];
+    if (!columns || !balance || flows.length === 0) return update(layer, drawn);
     const powers = powersOf(columns, balance),
       time = columns.time_s!;
-    for (const flow of flows) {
+    const moving = flows.flatMap((flow) => {
       const power = powers[flow.part];
-      if (!power) continue;
+      return power ? [{flow, power, passed: passed(power, time, flow.mean)}] : [];
+    });
+    for (const {flow} of moving) {
       const path = (kind: string) => svg('path', {class: `live ${kind} flow-${flow.kind}`, d: flow.d});
-      const live = {flow, power, passed: passed(power, time, flow.mean), wide: path('now'), line: path('marks')};
-      this.picture.append(live.wide, live.line);
-      this.live.push(live);
+      drawn.push(path('now'), path('marks'));
     }
-    this.stored = storedPower(powers, balance, time.length);
     const [, , , height] = this.picture.getAttribute('viewBox')!.split(' ').map(Number);
-    this.note = svg('text', {class: 'live', x: 4, y: height! - 2});
-    this.picture.append(this.note);
+    drawn.push(svg('text', {class: 'live', x: 4, y: height! - 2}));
+    update(layer, drawn);
+    const [...children] = layer.children;
+    this.live = moving.map((each, n) => ({
+      ...each,
+      wide: children[2 * n] as SVGPathElement,
+      line: children[2 * n + 1] as SVGPathElement,
+    }));
+    this.note = children[2 * moving.length] as SVGTextElement;
+    this.stored = storedPower(powers, balance, time.length);
     this.parts = ['rotor', 'wings', ...(Number(values['spring.stiffness']) > 0 ? ['springs'] : [])];
   }
   private parts: string[] = [];

@@ -1,6 +1,6 @@
 // The mechanism at one instant of the cycle, to scale but for the wings' length; arrows for what acts.
 import type {Columns, Mechanism} from '../core';
-import {svg} from '../dom';
+import {svg, update} from '../dom';
 import {readable} from '../quantities';
 
 export type Point = [number, number];
@@ -306,7 +306,7 @@ export function drawMechanism(
       ),
     );
   }
-  picture.replaceChildren(...parts);
+  update(picture, parts);
 }
 
 /** The peaks of a cycle by which its instants are scaled. */

@@ -1,7 +1,7 @@
 // Where the power goes: from the supply through motor and mechanism to the air, mean powers of a cycle.
 import {sankey, sankeyLinkHorizontal} from 'd3-sankey';
 import type {Balance} from '../core';
-import {svg} from '../dom';
+import {layerOf, svg, update} from '../dom';
 import {digits, readable} from '../quantities';
 
 interface Place {
@@ -63,13 +63,13 @@ function network(b: Balance): {nodes: Place[]; links: Flow[]} {
 export function drawSankey(picture: SVGSVGElement, balance: Balance | null, room: number): DrawnFlow[] {
   const width = Math.max(330, Math.min(720, room || 640));
   picture.setAttribute('viewBox', `0 0 ${width} ${height}`);
-  picture.replaceChildren();
+  const means = layerOf(picture, 'flows');
   if (!balance || !(balance.electrical > 0)) {
-    picture.append(
-      svg('text', {x: width / 2, y: height / 2, 'text-anchor': 'middle', class: 'nothing'}, 'no steady cycle'),
-    );
+    const nothing = {x: width / 2, y: height / 2, 'text-anchor': 'middle', class: 'nothing'};
+    update(means, [svg('text', nothing, 'no steady cycle')]);
     return [];
   }
+  const parts: SVGElement[] = [];
   const layout = sankey<Place, Flow>()
     .nodeWidth(10)
     .nodePadding(22)
@@ -83,7 +83,7 @@ export function drawSankey(picture: SVGSVGElement, balance: Balance | null, room
     return {part, mean: value, width: Math.max(1, thick ?? 0), d, kind};
   });
   for (const {kind, d, width: thick, mean} of flows) {
-    picture.append(
+    parts.push(
       svg('path', {class: `flow flow-${kind}`, d, 'stroke-width': thick}, svg('title', {}, `${readable(mean, 'W')}`)),
     );
   }
@@ -92,18 +92,19 @@ export function drawSankey(picture: SVGSVGElement, balance: Balance | null, room
       x1 = node.x1 ?? 0,
       y0 = node.y0 ?? 0,
       y1 = node.y1 ?? 0;
-    picture.append(
+    parts.push(
       svg('rect', {class: `node node-${node.kind}`, x: x0, y: y0, width: x1 - x0, height: Math.max(1, y1 - y0)}),
     );
     const share = `${digits((100 * (node.value ?? 0)) / balance.electrical, 3)} %`;
     const label = width < 500 ? `${node.name} ${share}` : `${node.name} ${readable(node.value, 'W')} (${share})`;
     const above = node.kind === 'station' || node.kind === 'input';
-    picture.append(
+    parts.push(
       above
         ? svg('text', {...stationPlace(x0, x1, width), y: y0 - 6, class: 'halo'}, node.name)
         : svg('text', {x: x1 + 6, y: (y0 + y1) / 2 + 4}, label),
     );
   }
+  update(means, parts);
   return flows;
 }
 
