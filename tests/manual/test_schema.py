@@ -2,6 +2,7 @@
 that is described is written by some command."""
 
 import copy
+import functools
 import importlib.machinery
 import importlib.util
 import json
@@ -169,8 +170,16 @@ def written(schema, value, path=""):
                     yield from written(one["additionalProperties"], within, path + ".*")
 
 
+@functools.cache
 def schema_of(command):
     return json.loads(subprocess.run([PROGRAM, "schema", command], capture_output=True, text=True, check=True).stdout)
+
+
+def refuses(validator, value):
+    """Whether a value is not of a schema; looks at what the value's own keys may be first, which takes less."""
+    schema = validator.schema
+    outer = {**schema, "properties": dict.fromkeys(schema.get("properties", {}), True)}
+    return not jsonschema.Draft202012Validator(outer).is_valid(value) or not validator.is_valid(value)
 
 
 @unittest.skipUnless(jsonschema, "python3-jsonschema is not installed")
@@ -205,8 +214,8 @@ class Schema(unittest.TestCase):
             # A key of an alternative schema may be missing.
             if key in validator.schema.get("required", ()):
                 without = {name: value for name, value in shown.items() if name != key}
-                self.assertFalse(validator.is_valid(without), f"{command} without {key}")
-        self.assertFalse(validator.is_valid({**shown, "more": 1}), f"{command} with a key more")
+                self.assertTrue(refuses(validator, without), f"{command} without {key}")
+        self.assertTrue(refuses(validator, {**shown, "more": 1}), f"{command} with a key more")
         return shown
 
     def everything_is_written(self, command):
