@@ -1,6 +1,7 @@
 // A vehicle that stays upright over the ground: gravity and the lift of the cycle move it up or down. The drag of the
 // body, and what its speed changes about the lift, are left out.
 import type {Columns} from './core';
+import {interpolated} from './measured';
 
 export const gravity = 9.80665; // [m/s2], as in the library
 
@@ -37,21 +38,19 @@ export class Flight {
       return this.advance(0, to);
     }
     const duration = (to - from) * this.period,
-      gainedBefore = at(this.gained, from);
+      gainedBefore = interpolated(this.gained, from);
     // Relative to a vehicle that goes on at the speed it had at `from`.
-    this.height += this.speed * duration + at(this.climbed, to) - at(this.climbed, from) - gainedBefore * duration;
-    this.speed += at(this.gained, to) - gainedBefore;
+    this.height +=
+      this.speed * duration +
+      interpolated(this.climbed, to) -
+      interpolated(this.climbed, from) -
+      gainedBefore * duration;
+    this.speed += interpolated(this.gained, to) - gainedBefore;
   }
 
   rest() {
     this.height = this.speed = 0;
   }
-}
-
-function at(numbers: Float64Array, share: number): number {
-  const place = share * (numbers.length - 1),
-    row = Math.min(numbers.length - 2, Math.floor(place));
-  return numbers[row]! + (place - row) * (numbers[row + 1]! - numbers[row]!);
 }
 
 /** What the mean lift over the weight does. */

@@ -46,12 +46,15 @@ export function readMeasured(name: string, text: string, known: readonly string[
   return {name, columns, ignored: names.filter((column) => !known.includes(column))};
 }
 
-/** Linear between the rows of a cycle, at a share of its period. */
-export function atShare(numbers: Float64Array, share: number): number {
-  const place = (share - Math.floor(share)) * (numbers.length - 1),
+/** Of numbers at equal steps from 0 to 1 the one at a share, on a straight line between two. */
+export function interpolated(numbers: Float64Array, share: number): number {
+  const place = share * (numbers.length - 1),
     row = Math.min(numbers.length - 2, Math.floor(place));
   return numbers[row]! + (place - row) * (numbers[row + 1]! - numbers[row]!);
 }
+
+/** Linear between the rows of a cycle, at a share of its period. */
+export const atShare = (numbers: Float64Array, share: number) => interpolated(numbers, share - Math.floor(share));
 
 const turn = 2 * Math.PI;
 

@@ -2,6 +2,7 @@
 // energy that has passed. What the moving parts and springs take up or give back is stated below.
 import type {Balance, Columns, Values} from '../core';
 import {layerOf, set, svg, update} from '../dom';
+import {interpolated} from '../measured';
 import {readable} from '../quantities';
 import type {DrawnFlow, Part} from './sankey';
 
@@ -109,13 +110,13 @@ export class LiveFlow {
 
   show(share: number) {
     for (const {flow, power, passed: gone, wide, line} of this.live) {
-      const now = at(power, share) / flow.mean;
+      const now = interpolated(power, share) / flow.mean;
       set(wide, {'stroke-width': (flow.width * Math.min(widest, Math.abs(now))).toFixed(1)});
       wide.classList.toggle('back', now < 0);
-      set(line, {'stroke-dashoffset': (-marks * apart * at(gone, share)).toFixed(1)});
+      set(line, {'stroke-dashoffset': (-marks * apart * interpolated(gone, share)).toFixed(1)});
     }
     if (!this.note || !this.stored) return;
-    const now = at(this.stored, share),
+    const now = interpolated(this.stored, share),
       where = `${this.parts.slice(0, -1).join(', ')} and ${this.parts.at(-1)}`;
     this.note.textContent = `now ${readable(Math.abs(now), 'W', 2)} ${now < 0 ? 'from' : 'into'} ${where}`;
   }
@@ -139,10 +140,4 @@ function storedPower(powers: Partial<Record<Part, Float64Array>>, balance: Balan
   return Float64Array.from({length: rows}, (_, row) =>
     spent.reduce((left, part) => left - (powers[part]?.[row] ?? balance[part as keyof Balance]), electrical[row]!),
   );
-}
-
-function at(numbers: Float64Array, share: number): number {
-  const place = share * (numbers.length - 1),
-    row = Math.min(numbers.length - 2, Math.floor(place));
-  return numbers[row]! + (place - row) * (numbers[row + 1]! - numbers[row]!);
 }

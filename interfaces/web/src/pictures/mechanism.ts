@@ -1,6 +1,7 @@
 // The mechanism at one instant of the cycle, to scale but for the wings' length; arrows for what acts.
 import type {Columns, Mechanism} from '../core';
 import {svg, update} from '../dom';
+import {atShare} from '../measured';
 import {readable} from '../quantities';
 
 export type Point = [number, number];
@@ -129,19 +130,15 @@ class Sketch {
   }
 }
 
-function interpolated(numbers: Float64Array, angle: number): number {
-  const turns = angle / (2 * Math.PI),
-    place = (turns - Math.floor(turns)) * (numbers.length - 1);
-  const row = Math.min(numbers.length - 2, Math.floor(place));
-  return numbers[row]! + (place - row) * (numbers[row + 1]! - numbers[row]!);
-}
+/** What the numbers of a whole turn are at an angle. */
+const atAngle = (numbers: Float64Array, angle: number) => atShare(numbers, angle / (2 * Math.PI));
 
 /** The stroke angle that the transmission gives at a crank angle. */
-export const strokeAt = (m: Mechanism, angle: number) => interpolated(m.columns.stroke_angle_rad!, angle);
+export const strokeAt = (m: Mechanism, angle: number) => atAngle(m.columns.stroke_angle_rad!, angle);
 
 const jointAt = (m: Mechanism, name: string, angle: number): Point => [
-  interpolated(m.columns[`${name}_x`]!, angle),
-  interpolated(m.columns[`${name}_y`]!, angle),
+  atAngle(m.columns[`${name}_x`]!, angle),
+  atAngle(m.columns[`${name}_y`]!, angle),
 ];
 const between = (a: Point, b: Point, share: number): Point => [
   a[0] + share * (b[0] - a[0]),
