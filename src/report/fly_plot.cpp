@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -64,8 +65,17 @@ std::vector<FlownPanel> flown_panels(const FlyReport& report) {
   return panels;
 }
 
+/// The rows that follow each other at one distance. A flight ends between two of them: that last row is at another
+/// phase of the wingbeat, and its power is a mean over less than the others'.
+std::span<const FlightRow> evenly_spaced(std::span<const FlightRow> rows) {
+  if (rows.size() < 3) return rows;
+  constexpr double rounding = 1e-6;
+  const double usual = rows[1].time - rows[0].time, last = rows.back().time - rows[rows.size() - 2].time;
+  return last < (1.0 - rounding) * usual ? rows.first(rows.size() - 1) : rows;
+}
+
 /// The axis of a panel: its curves with room, and those limits that are near.
-std::pair<double, double> flown_range(const FlownPanel& panel, const std::vector<FlightRow>& rows) {
+std::pair<double, double> flown_range(const FlownPanel& panel, std::span<const FlightRow> rows) {
   double low = infinity, high = -infinity;
   for (const FlownCurve& curve : panel.curves) {
     for (const FlightRow& row : rows) {
@@ -84,7 +94,7 @@ std::pair<double, double> flown_range(const FlownPanel& panel, const std::vector
 
 void plot_fly(const FlyReport& report, PlotFormat format, const std::filesystem::path& file) {
   const std::vector<FlownPanel> panels = flown_panels(report);
-  const std::vector<FlightRow>& rows = report.flight.rows;
+  const std::span<const FlightRow> rows = evenly_spaced(report.flight.rows);
   constexpr double left_inches = 0.52, right = 0.96;
   constexpr double key_inches = left_inches + 1.35;
   const double left = left_inches / format.width, head = 0.28, foot = 0.42, each = 0.72, gap = 0.26;
@@ -110,7 +120,7 @@ void plot_fly(const FlyReport& report, PlotFormat format, const std::filesystem:
     }
     figure.add("\n");
   }
-  const double last = std::max(rows.back().time, 1e-3);
+  const double last = std::max(report.flight.rows.back().time, 1e-3);
   figure.add("END\nset multiplot\nset lmargin at screen {}\nset rmargin at screen {}\n", left, right);
   const AxisMarks across(0.0, last, (right - left) * format.width, false, false);
   std::size_t column = 2;
