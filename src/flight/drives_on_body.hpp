@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <initializer_list>
 #include <limits>
 #include <optional>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "flight/air_on_body.hpp"
 #include "time/integrator.hpp"
 #include "time/time_model.hpp"
+#include "wingbeat/core/status.hpp"
 #include "wingbeat/parts/body.hpp"
 
 namespace wingbeat::detail {
@@ -115,6 +117,14 @@ class DrivesOnBody {
     });
     body_at_ = count;
     return count + body_state_count;
+  }
+
+  /// The next larger of the numbers of unknowns for which steps are compiled; those without a meaning stay at 0.
+  static int padded(std::size_t count, std::initializer_list<int> compiled) {
+    for (const int size : compiled) {
+      if (int(count) <= size) return size;
+    }
+    throw ParameterError("vehicle", "has more states than a flight knows");
   }
 
   double* of_drive(std::size_t n, double* y) const { return y + first_[n]; }

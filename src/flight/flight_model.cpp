@@ -12,16 +12,6 @@
 namespace wingbeat::detail {
 namespace {
 
-/// Numbers of unknowns for which steps are compiled; a vehicle has the next larger one, the rest at 0.
-constexpr int step_sizes[] = {16, 20, 24, 32};
-
-int padded(std::size_t count) {
-  for (const int size : step_sizes) {
-    if (int(count) <= size) return size;
-  }
-  throw ParameterError("vehicle", "has more states than a flight knows");
-}
-
 Supply<double> constant_supply(double voltage) { return {SupplyType::constant, voltage, 0.0, 1.0}; }
 
 std::vector<TimeModel> models_of(const FlightVehicle& vehicle) {
@@ -42,7 +32,7 @@ std::vector<TimeModel> models_of(const FlightVehicle& vehicle) {
 }  // namespace
 
 FlightModel::FlightModel(const FlightVehicle& flies) : vehicle(flies), drives(models_of(flies)) {
-  coupled = padded(order_unknowns());
+  coupled = padded(order_unknowns(), {16, 20, 24, 32});
   own_flows();
   controls_[FlightControl::voltage] = vehicle.stated_voltage;
   set_controls(controls_);

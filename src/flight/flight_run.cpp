@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "wingbeat/core/math.hpp"
+#include "wingbeat/core/root.hpp"
 #include "wingbeat/core/text.hpp"
 
 namespace wingbeat::detail {
@@ -235,14 +236,12 @@ void FlightRun::land(FlightSimulation kept, const FlightState& before, double un
   const double T = until - before.time;
   const double h0 = -a.position[2] - *plan_.ground, h1 = -b.position[2] - *plan_.ground;
   const double v0 = -T * to_earth(a.attitude, a.velocity)[2], v1 = -T * to_earth(b.attitude, b.velocity)[2];
-  double low = 0.0, high = 1.0;
-  for (int n = 0; n < 60; ++n) {
-    const double x = 0.5 * (low + high);
-    const double h = h0 + x * (v0 + x * (3.0 * (h1 - h0) - 2.0 * v0 - v1 + x * (2.0 * (h0 - h1) + v0 + v1)));
-    (h > 0.0 ? low : high) = x;
-  }
+  const auto above = [&](double x) {
+    return h0 + x * (v0 + x * (3.0 * (h1 - h0) - 2.0 * v0 - v1 + x * (2.0 * (h0 - h1) + v0 + v1))) > 0.0;
+  };
+  const double contact = bisect(above, 0.0, 1.0).after;
   simulation_ = std::move(kept);
-  simulation_.step_to(before.time + high * T);
+  simulation_.step_to(before.time + contact * T);
 }
 
 bool FlightRun::ends(FlightOutcome outcome, std::string detail) {

@@ -16,7 +16,7 @@ constexpr int few = 20, many = 28;
 
 FlightSteps::FlightSteps(std::vector<MeasuredModel*> drives, BodyInTime& body, std::int64_t work)
     : drives_(std::move(drives)), body_(body), work_left_(work) {
-  coupled = int(order_unknowns()) <= few ? few : many;
+  coupled = padded(order_unknowns(), {few, many});
   scale_body();
   now.t = drives_[0]->now.t;
 }
