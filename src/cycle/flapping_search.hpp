@@ -57,8 +57,12 @@ class StableOrbits {
   std::optional<std::size_t> reached_from_rest()
     requires(!System::turns)
   {
+    return reached_from({});
+  }
+
+  /// Which of them iterates from a state come to; nothing as above, and where the crank does not turn on.
+  std::optional<std::size_t> reached_from(State here) {
     constexpr double accuracy = 1e-6;
-    State here{};
     return plain_iterates(here, accuracy, 300);
   }
 
@@ -82,6 +86,8 @@ class StableOrbits {
   }
 
  private:
+  static constexpr double close = 1e-2;  ///< to an orbit: on the way to it
+
   template <class Search>
   void keep(const State& guess, long max_evaluations, const Search& search) {
     constexpr double same = 1e-3;  // orbits that are nearer to each other are one
@@ -121,8 +127,14 @@ class StableOrbits {
   /// Whether plain iterates from a state come to a stable orbit that is known, at less work than to find it once more;
   /// moves the state along them.
   bool leads_to_known(State& y) {
+    if (orbits_.empty() || !springs_return()) return false;
     constexpr double accuracy = 1e-3;
-    return !orbits_.empty() && springs_return() && plain_iterates(y, accuracy, 8);
+    constexpr int fewest = 8, most = 40;
+    // As many as leave of the largest distance what counts as close.
+    double slowest = 0.0;
+    for (OrbitSearch<System>& known : orbits_) slowest = std::max(slowest, known.multiplier());
+    const double needed = std::ceil(std::log(close) / std::log(std::min(slowest, 0.99)));
+    return plain_iterates(y, accuracy, int(std::clamp(needed + 2.0, double(fewest), double(most)))).has_value();
   }
 
   /// Moves a state along at most so many iterates, until it is close to one of the orbits: which.
@@ -144,7 +156,6 @@ class StableOrbits {
   }
 
   std::optional<std::size_t> nearest_to(const State& settled) const {
-    constexpr double close = 1e-2;
     const auto nearest = std::min_element(orbits_.begin(), orbits_.end(), [&](const auto& a, const auto& b) {
       return apart(a.start(), settled) < apart(b.start(), settled);
     });
@@ -198,7 +209,17 @@ SteadyFlapping search_flapping(const Vehicle<double>& vehicle, const SteadyOptio
     if (from_rest) chosen = *from_rest;
   }
   if (start_up && !from_rest && unresolved()) {
-    const StartUpOutcome outcome = start_up(vehicle);
+    // A crank that has turned is in the orbit search's own terms: iterates follow it on, many times as fast.
+    Arrival arrived;
+    if constexpr (System::turns) {
+      arrived = [&, first_turn = true](const Coordinates<double>& there) mutable {
+        if (std::exchange(first_turn, false) && !orbits.empty()) {
+          from_rest = orbits.reached_from(System::state_of(there, vehicle));
+        }
+        return from_rest.has_value();
+      };
+    }
+    const StartUpOutcome outcome = start_up(vehicle, arrived);
     if (outcome.status != FlappingStatus::flapping) {
       result.status = outcome.status;
       result.evidence = outcome.evidence;
@@ -208,8 +229,8 @@ SteadyFlapping search_flapping(const Vehicle<double>& vehicle, const SteadyOptio
       }
       return result;
     }
-    std::optional<std::size_t> which;
-    if (outcome.settled) {
+    std::optional<std::size_t> which = from_rest;
+    if (!which && outcome.settled) {
       which = orbits.reached_at(System::state_of(outcome.state, vehicle));
     }
     result.summary = orbits.last();

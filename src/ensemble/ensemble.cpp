@@ -360,7 +360,7 @@ class EnsembleRun {
     steady.tolerance = scalar_tolerance(members_[n].vehicle);
     steady.stability = options_.metrics[std::size_t(Metric::floquet_multiplier_max)];
     steady.reporting = members_[n].reporting;
-    const StartUp known = [](const Vehicle<double>&) { return StartUpOutcome{}; };
+    const StartUp known = [](const Vehicle<double>&, const Arrival&) { return StartUpOutcome{}; };
     SteadyFlapping found;
     if (start_up_is_known(n)) found = detail::find_flapping_as_it_is(members_[n].vehicle, steady, known);
     if (found.status != FlappingStatus::flapping) {

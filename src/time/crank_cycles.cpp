@@ -31,6 +31,12 @@ bool CrankStartUp::cycle_done() {
   crossings_.push_back({now_.t, now_.moving, now_.t - before, 0.0});
   event(Kind::revolution);
   model_.next_cycle += two_pi;
+  Coordinates<double> at_zero = now_.moving;
+  at_zero.angle = 0.0;
+  if (options_.arrived && options_.arrived(at_zero)) {
+    flap();
+    return true;
+  }
   const bool restart = model_.supply.type == SupplyType::constant ? cycle_done_constant() : cycle_done_averaging();
   if (!done_ && int(crossings_.size()) >= options_.max_cycles) {
     give_up({.kind = Evidence::cycles_differ, .change = change_, .cycles = options_.max_cycles});

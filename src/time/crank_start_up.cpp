@@ -18,6 +18,7 @@ constexpr int stiff_steps_per_piece = 2000;
 CrankStartUp::CrankStartUp(const Vehicle<double>& vehicle, const TransientOptions& options)
     : StartUpRun(vehicle, options.supply.value_or(Supply<double>{SupplyType::constant, vehicle.voltage, 0.0, 1.0}),
                  options, 1e-2, 3e-3) {
+  if (options.arrived) options_.metrics = false;
   if (options.supply && options.supply->type == SupplyType::pwm && model_.supply.type == SupplyType::constant) {
     result_.current_ripple = 0.0;
   }

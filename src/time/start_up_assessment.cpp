@@ -12,8 +12,9 @@ constexpr long least_steps = 150000;  ///< what is left for an assessment's cycl
 }  // namespace
 
 StartUp start_up_in_time(double tolerance, TimeIntegrator integrator) {
-  return [tolerance, integrator](const Vehicle<double>& vehicle) {
+  return [tolerance, integrator](const Vehicle<double>& vehicle, const Arrival& arrived) {
     TransientOptions options;
+    options.arrived = arrived;
     options.integrator = integrator;
     options.tolerance = std::max(tolerance, tightest);
     options.metrics = false;

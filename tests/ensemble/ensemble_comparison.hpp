@@ -72,11 +72,11 @@ inline constexpr int many_members = 20000;
 /// Start-up in time, asked once per vehicle: both solvers of a comparison share its answers.
 inline StartUp remembered_start_up() {
   auto known = std::make_shared<std::map<std::vector<double>, StartUpOutcome>>();
-  return [known, assess = start_up_in_time()](const Vehicle<double>& v) {
+  return [known, assess = start_up_in_time()](const Vehicle<double>& v, const Arrival&) {
     std::vector<double> key;
     for_each_number(v, [&](double x) { key.push_back(std::isnan(x) ? -infinity : x); });
     const auto [entry, is_new] = known->try_emplace(key);
-    if (is_new) entry->second = assess(v);
+    if (is_new) entry->second = assess(v, {});
     return entry->second;
   };
 }

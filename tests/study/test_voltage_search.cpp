@@ -191,9 +191,9 @@ Traced trace(const Vehicle<double>& vehicle, double low, double high, int count)
 TEST(LiftSearch, WingsThatPitchReachItByTheirAmplitude) {
   const Design<double> d = hinged_design(3e-4);
   int simulations = 0;
-  const StartUp counted = [&](const Vehicle<double>& v) {
+  const StartUp counted = [&](const Vehicle<double>& v, const Arrival& arrived) {
     ++simulations;
-    return start_up_in_time()(v);
+    return start_up_in_time()(v, arrived);
   };
   Vehicle<double> v = resolve(d);
   const double target = 0.03;

@@ -89,12 +89,19 @@ Answer by_run(const WideVehicle& vehicle, Method method, double tolerance_wanted
   return answer;
 }
 
+/// Whether the motor moves a load: without friction and air, its mean output is what rounding leaves.
+bool has_load(const Metrics<double>& m) {
+  return std::abs(m[Metric::power_motor]) > 1e-6 * std::abs(m[Metric::power_electrical]);
+}
+
 /// What an error of a metric is measured by: the metric, but for those that may vanish.
 double scale_of(Metric metric, const Metrics<double>& m) {
   switch (metric) {
+    case Metric::power_motor: return std::abs(m[has_load(m) ? metric : Metric::power_electrical]);
+    case Metric::efficiency_motor: return has_load(m) ? std::abs(m[metric]) : 1.0;
     case Metric::power_gear:
     case Metric::power_residual:
-    case Metric::power_loss: return std::max(std::abs(m[metric]), std::abs(m[Metric::power_motor]));
+    case Metric::power_loss: return std::max(std::abs(m[metric]), scale_of(Metric::power_motor, m));
     case Metric::current_mean:  // that of a direct drive alternates
       return std::max(error_scale(m, metric), 0.01 * std::abs(m[Metric::current_peak]));
     case Metric::angle_of_attack_min: return std::max(90.0, std::abs(m[metric]));
@@ -107,16 +114,17 @@ double scale_of(Metric metric, const Metrics<double>& m) {
 }
 
 /// Largest relative error of the metrics, the Floquet multiplier aside; infinite where only one of two is absent.
-double largest_error(const Metrics<double>& got, const Metrics<double>& expected, const char** where = nullptr) {
+double largest_error(const Metrics<double>& got, const Metrics<double>& expected, Metric& where) {
   double largest = 0.0;
   for (int k = 0; k < metric_count; ++k) {
     const Metric metric = Metric(k);
     if (metric == Metric::floquet_multiplier_max) continue;
+    if (metric == Metric::efficiency_mechanism && !has_load(expected)) continue;  // 0 / 0
     const double difference = std::abs(got[metric] - expected[metric]), scale = scale_of(metric, expected);
     const bool one_absent = std::isnan(got[metric]) != std::isnan(expected[metric]);
     if (!one_absent && !(difference > largest * scale)) continue;
     largest = !one_absent && scale > 0.0 ? difference / scale : INFINITY;
-    if (where) *where = metric_info(metric).key;
+    where = metric;
   }
   return largest;
 }
@@ -308,13 +316,19 @@ Counts check_box(FarBox box, const Arguments& arguments) {
     c.orbit_differs += orbit_differs;
     c.orbit_seconds = std::max(c.orbit_seconds, v.orbit.seconds);
     c.transient_seconds = std::max(c.transient_seconds, v.transient.seconds);
-    const auto compare = [&](const Answer& a, Errors& errors) {
+    const auto compare = [&](const char* name, const Answer& a, Errors& errors) {
       if (!v.any_flapping() || !a.asked || !a.decided || a.status != FlappingStatus::flapping) return;
-      errors.add(largest_error(a.metrics, v.reference.metrics));
+      Metric where{};
+      const double error = largest_error(a.metrics, v.reference.metrics, where);
+      errors.add(error);
+      if (error <= 100.0 * tolerance) return;
+      std::printf("%s %u: %s by %s %.9g, to 1e-9 %.9g, off by %.2g of its scale\n",
+                  std::string(far_box_names[std::size_t(box)]).c_str(), number_of(n), metric_info(where).key, name,
+                  a.metrics[where], v.reference.metrics[where], error);
     };
-    if (!batched_other) compare(v.batched, c.batched);
-    if (!orbit_other) compare(v.orbit, c.orbit);
-    if (!averages) compare(v.transient, c.transient);
+    if (!batched_other) compare("batched", v.batched, c.batched);
+    if (!orbit_other) compare("orbit", v.orbit, c.orbit);
+    if (!averages) compare("transient", v.transient, c.transient);
     const bool slow = v.orbit.seconds > 0.5 || v.transient.seconds > 5.0;
     if (one || batched_differs || orbit_differs || batched_other || orbit_other || !v.transient.decided || slow) {
       std::printf("%s %u: batched %s%s, orbit %s (%.3f s), transient %s (%.2f s)\n    orbit: %s\n    transient: %s\n",
@@ -327,9 +341,9 @@ Counts check_box(FarBox box, const Arguments& arguments) {
       if (v.any_flapping()) {
         for (const auto& [name, answer] :
              {std::pair{"batched", &v.batched}, {"orbit", &v.orbit}, {"transient", &v.transient}}) {
-          const char* where = "";
-          const double error = largest_error(answer->metrics, v.reference.metrics, &where);
-          std::printf("# %s: largest error %.2g, of %s\n", name, error, where);
+          Metric where{};
+          const double error = largest_error(answer->metrics, v.reference.metrics, where);
+          std::printf("# %s: largest error %.2g, of %s\n", name, error, metric_info(where).key);
         }
       }
       for (const auto& [name, answer] : {std::pair{"orbit", &v.orbit}, {"transient", &v.transient}}) {
@@ -393,12 +407,12 @@ int check_packs(const Arguments& arguments) {
           std::printf("%s %zu: batched %s, orbit %s: %s\n", box.c_str(), n, name_of(outcomes[n].status),
                       scalar[n].name(), scalar[n].detail.c_str());
         } else if (scalar[n].status == FlappingStatus::flapping) {
-          const char* where = "";
-          const double error = largest_error(outcomes[n].metrics, scalar[n].metrics, &where);
+          Metric where{};
+          const double error = largest_error(outcomes[n].metrics, scalar[n].metrics, where);
           largest = std::max(largest, error);
           if (error <= 2.0 * tolerance) continue;
           ++apart;
-          std::printf("%s %zu: %s apart by %.2g\n", box.c_str(), n, where, error);
+          std::printf("%s %zu: %s apart by %.2g\n", box.c_str(), n, metric_info(where).key, error);
         }
       }
       std::printf("%-28s %6d %9d | %8d %14d | %.2g\n", box.c_str(), arguments.count, by_packs, statuses, apart,

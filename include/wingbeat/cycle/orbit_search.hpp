@@ -77,7 +77,7 @@ class OrbitSearch {
 
   /// One search from a state at the start of an iterate; of the multiplier see PeriodicOptions.
   bool search(const State& guess, double expected_multiplier = 1.0) {
-    solver::PeriodicOptions periodic{.tolerance = options_.get().tolerance,
+    solver::PeriodicOptions periodic{.tolerance = step_tolerance(),
                                      .stability = options_.get().stability,
                                      .expected_multiplier = expected_multiplier};
     if constexpr (System::on_hinges) periodic.max_steps = pitching_steps;
@@ -104,7 +104,7 @@ class OrbitSearch {
   /// many: implicit ones tell.
   bool search_near(const State& guess) {
     solver::PeriodicOptions periodic{
-        .tolerance = options_.get().tolerance, .stability = options_.get().stability, .near = true};
+        .tolerance = step_tolerance(), .stability = options_.get().stability, .near = true};
     if constexpr (System::on_hinges) periodic.max_steps = pitching_steps;
     for (const auto method : {solver::Method::explicit_pair, solver::Method::radau}) {
       if (method == solver::Method::explicit_pair && stiff(guess)) continue;
@@ -122,8 +122,11 @@ class OrbitSearch {
   double multiplier() {
     if (std::isfinite(summary_.floquet_multiplier_max)) return summary_.floquet_multiplier_max;
     if (summary_.newton_steps == 0) return 0.0;
-    constexpr int n = int(std::tuple_size_v<State>);
-    return solver::monodromy_product(system_, system_.template cast<Jet<n>>(), iterate_).spectral_radius();
+    if (!multiplier_) {
+      constexpr int n = int(std::tuple_size_v<State>);
+      multiplier_ = solver::monodromy_product(system_, system_.template cast<Jet<n>>(), iterate_).spectral_radius();
+    }
+    return *multiplier_;
   }
 
   /// What the energy balance leaves open of a cycle refused for that, of the input.
@@ -167,6 +170,14 @@ class OrbitSearch {
   }
 
  private:
+  /// What steps are controlled to: across the knots of a table they err more than they estimate.
+  double step_tolerance() const {
+    const Vehicle<double>& v = system_.vehicle;
+    const bool knots = v.wings.coefficients.table || is_given(v.wings.tabulated) ||
+                       (System::turns && v.transmission.type == TransmissionType::tabulated);
+    return (knots ? 0.2 : 1.0) * options_.get().tolerance;
+  }
+
   const PitchMetrics& pitch() {
     if (!pitch_) pitch_ = pitch_metrics(system_, iterate_);
     return *pitch_;
@@ -175,6 +186,7 @@ class OrbitSearch {
   /// An orbit whose energy balance stays open is none: finer steps first.
   void solve(const State& guess, solver::PeriodicOptions periodic) {
     pitch_.reset();
+    multiplier_.reset();
     constexpr double finer = 1e-2, finest = 1e-12;
     summary_ = solver::solve_periodic(system_, guess, periodic, iterate_, work_.get());
     if (summary_.status != solver::PeriodicStatus::converged || balances()) return;
@@ -213,6 +225,7 @@ class OrbitSearch {
   solver::Iterate<System> iterate_;
   solver::PeriodicSummary summary_;
   std::optional<PitchMetrics> pitch_;
+  std::optional<double> multiplier_;
   double imbalance_ = absent;
 };
 

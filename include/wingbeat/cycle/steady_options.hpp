@@ -29,7 +29,10 @@ struct StartUpOutcome {
   /// settle. An assessment that cannot tell them leaves this empty.
   std::function<std::optional<SimulatedCycle>(double tolerance, const Reporting& reporting)> cycle;
 };
-using StartUp = std::function<StartUpOutcome(const Vehicle<double>&)>;
+/// Asked at the end of each turn of a crank with everything there, the angle being 0: true where what becomes of it is
+/// known, so that it counts as settled.
+using Arrival = std::function<bool(const Coordinates<double>&)>;
+using StartUp = std::function<StartUpOutcome(const Vehicle<double>&, const Arrival&)>;
 
 struct SteadyOptions {
   double tolerance = 1e-6;  ///< wanted relative accuracy of every metric; 1e-12 is the tightest that makes sense

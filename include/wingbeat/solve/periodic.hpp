@@ -125,7 +125,8 @@ class IterateInverse {
 
   /// The derivative is that of `iterate`.
   IterateInverse(const System& system, const Iterate<System>& iterate)
-      : inverse_(monodromy(system, system.template cast<Jet<int(n)>>(), iterate)) {
+      : derivative_(monodromy_product(system, system.template cast<Jet<int(n)>>(), iterate)),
+        inverse_(derivative_.matrix()) {
     for (std::size_t k = 0; k < n * n; ++k) inverse_[k] = (k % (n + 1) == 0 ? 1.0 : 0.0) - inverse_[k];
     if (!invert(int(n), inverse_.data())) return;
     const State scale = system.error_scale(iterate.steps.front().y);
@@ -138,6 +139,8 @@ class IterateInverse {
     }
     isolated_ = amplification_ < 1e9;
   }
+
+  const MatrixProduct<n>& derivative() const { return derivative_; }
 
   /// False where something drifts freely: neither a fixed point nor errors of it are to be had from the derivative.
   bool isolated() const { return isolated_; }
@@ -162,6 +165,7 @@ class IterateInverse {
   }
 
  private:
+  MatrixProduct<n> derivative_;
   std::array<double, n * n> inverse_;
   bool isolated_ = false;
   double amplification_ = 1.0;
@@ -239,6 +243,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   double amplification = 1.0, cancellation = 1.0, off = 1.0;
   double imbalance = 0.0;
   int repeats = 0, rebalanced = 0;
+  std::optional<MatrixProduct<n>> derivative;  // of the return map along the iterate as it is
   // A fine iterate too many costs twice what a coarse one does: the next may be thought near where it hardly is.
   const auto is_near_after = [&](double distance) {
     return forgets && distance * options.expected_multiplier < 2.0 * near_quickly;
@@ -259,6 +264,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
                                             .tolerance = tolerances[level],
                                             .max_steps = int(std::min(max_steps, affordable)),
                                             .switches = is_fine ? 1000 : System::state_switches};
+    derivative.reset();
     if (is_fine) {
       run_iterate<true>(system, y, iterate_options, iterate);
     } else {
@@ -295,6 +301,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
       ++summary.iterates;
       derivatives_taken();
       known = true;
+      derivative = of_iterate.derivative();
       amplification = of_iterate.amplification();
       if (amplification > 1.0 + slow_contraction) {
         tolerances[2] = std::max(fine / amplification, tightest);
@@ -309,7 +316,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     const double position_error = 0.7 * detail::switch_tolerance(iterate_options.tolerance);
     std::optional<detail::IterateInverse<System>> inverse;
     if (is_fine && slow) {
-      inverse.emplace(system, iterate);
+      derivative = inverse.emplace(system, iterate).derivative();
       ++summary.iterates;
       derivatives_taken();
       amplification = inverse->amplification();
@@ -326,6 +333,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
         for (double previous = 1.0; good && off > closed && off < 0.5 * previous;) {
           previous = off;
           iterate.end = moved;
+          derivative.reset();
           ++summary.newton_steps;
           residual = detail::close_on_mesh(system, iterate, std::max(closed / amplification, rounding), position_error,
                                            grazes);
@@ -345,6 +353,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     } else if (is_fine && residual < near) {
       for (double previous = 1.0; residual > closed && residual < 0.5 * previous;) {
         previous = residual;
+        derivative.reset();
         residual = detail::close_on_mesh(system, iterate, closed, position_error, grazes);
         ++summary.iterates;
         steps_taken();
@@ -410,8 +419,8 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   summary.error_estimate =
       std::max(0.4 * amplification * cancellation * iterate.error_sum + cancellation * off, 1.5 * imbalance);
   if (options.stability) {
-    summary.floquet_multiplier_max =
-        monodromy_product(system, system.template cast<Jet<int(n)>>(), iterate).spectral_radius();
+    if (!derivative) derivative = monodromy_product(system, system.template cast<Jet<int(n)>>(), iterate);
+    summary.floquet_multiplier_max = derivative->spectral_radius();
   }
   return summary;
 }
