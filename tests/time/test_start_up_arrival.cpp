@@ -36,7 +36,7 @@ TEST(StartUpArrival, EndsTheSimulationAtTheTurnAtWhichItIsTrue) {
   EXPECT_GT(whole.cycles, 2);
 }
 
-/// The same orbit, whether iterates go on from the first turn or the simulation settles by itself.
+/// Iterates that go on from the first turn come to the orbit on which the simulation settles by itself.
 TEST(StartUpArrival, IteratesDecideAsTheWholeSimulation) {
   int ended_early = 0, locked = 0;
   for (const FarBox box :
