@@ -1,7 +1,8 @@
 // Assessments of start-up that end where iterates of the orbit search take over.
 #include <gtest/gtest.h>
 
-#include <array>
+#include <cstdint>
+#include <vector>
 
 #include "vehicle/reference_vehicle.hpp"
 #include "vehicle/wide_boxes.hpp"
