@@ -170,13 +170,14 @@ class OrbitSearch {
   }
 
  private:
-  /// What steps are controlled to: across the knots of a table they err more than they estimate.
-  double step_tolerance() const {
+  /// Of the error allowed, what steps may estimate: across the knots of a table they err more.
+  double seen_by_steps() const {
     const Vehicle<double>& v = system_.vehicle;
     const bool knots = v.wings.coefficients.table || is_given(v.wings.tabulated) ||
                        (System::turns && v.transmission.type == TransmissionType::tabulated);
-    return (knots ? 0.2 : 1.0) * options_.get().tolerance;
+    return knots ? 0.2 : 1.0;
   }
+  double step_tolerance() const { return seen_by_steps() * options_.get().tolerance; }
 
   const PitchMetrics& pitch() {
     if (!pitch_) pitch_ = pitch_metrics(system_, iterate_);
@@ -184,7 +185,11 @@ class OrbitSearch {
   }
 
   /// An orbit whose energy balance stays open is none: finer steps first.
-  void solve(const State& guess, solver::PeriodicOptions periodic) {
+  void solve(const State& guess, const solver::PeriodicOptions& periodic) {
+    search_balanced(guess, periodic);
+    summary_.error_estimate /= seen_by_steps();
+  }
+  void search_balanced(const State& guess, solver::PeriodicOptions periodic) {
     pitch_.reset();
     multiplier_.reset();
     constexpr double finer = 1e-2, finest = 1e-12;
