@@ -170,7 +170,7 @@ class OrbitSearch {
   }
 
  private:
-  /// Of the error allowed, what steps may estimate: across the knots of a table they err more.
+  /// The part of an iterate's error that the estimates of its steps see: across the knots of a table, steps err more.
   double seen_by_steps() const {
     const Vehicle<double>& v = system_.vehicle;
     const bool knots = v.wings.coefficients.table || is_given(v.wings.tabulated) ||
@@ -184,11 +184,12 @@ class OrbitSearch {
     return *pitch_;
   }
 
-  /// An orbit whose energy balance stays open is none: finer steps first.
+  /// The estimate of the steps is raised to what they do not see.
   void solve(const State& guess, const solver::PeriodicOptions& periodic) {
     search_balanced(guess, periodic);
     summary_.error_estimate /= seen_by_steps();
   }
+  /// An orbit whose energy balance stays open is none: finer steps first.
   void search_balanced(const State& guess, solver::PeriodicOptions periodic) {
     pitch_.reset();
     multiplier_.reset();

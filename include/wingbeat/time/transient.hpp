@@ -45,7 +45,8 @@ struct TransientOptions {
   /// False, for a crank under constant voltage: ends as soon as cycles are within 1e-4 of where they settle, and
   /// gives no metrics.
   bool metrics = true;
-  Arrival arrived;  ///< true of a crank that flaps steadily, without metrics
+  /// For a crank: ends the simulation at the first turn at which it is true, as steady flapping, without metrics.
+  Arrival arrived;
   Reporting reporting;
   TimeIntegrator integrator = TimeIntegrator::automatic;
   std::function<bool()> cancel;  ///< polled now and then; true ends the computation unsettled
