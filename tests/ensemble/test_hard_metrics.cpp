@@ -7,6 +7,7 @@
 
 #include "vehicle/case_design.hpp"
 #include "vehicle/reference_vehicle.hpp"
+#include "vehicle/wide_boxes.hpp"
 #include "wingbeat/cycle/energy_audit.hpp"
 #include "wingbeat/cycle/steady_flapping.hpp"
 #include "wingbeat/ensemble/ensemble.hpp"
@@ -50,6 +51,22 @@ TEST(QuasiSteadyCurrent, PeaksAreThoseWithoutInductance) {
     for (const Metric m : {Metric::current_peak, Metric::rod_force_peak, Metric::frequency}) {
       EXPECT_NEAR(with.metrics[m] / without.metrics[m], 1.0, 1e-9) << name << ' ' << metric_info(m).key;
     }
+  }
+}
+
+// Without air, the stored energy is least where the rod force changes its sign: at a node, on either side of which
+// rounding gives its slope another sign.
+TEST(ReactivePower, OfBatchesHasTheExtremesAtNodes) {
+  const WideVehicle w = wide_vehicle(FarBox::four_bar, 24);
+  const EnsembleMember member{resolve(w.design, w.condition), reporting_of(w.design)};
+  const double exact = find_steady_flapping(member.vehicle, {.tolerance = 1e-9}).metrics[Metric::power_reactive];
+  ASSERT_GT(exact, 0.0);
+  for (const double tolerance : {1e-4, 1e-5, 1e-6, 1e-7, 1e-8}) {
+    EnsembleOptions options;
+    options.tolerance = tolerance;
+    EnsembleOutcome batched;
+    solve_ensemble({&member, 1}, options, start_up_in_time(), {&batched, 1});
+    EXPECT_NEAR(batched.metrics[Metric::power_reactive], exact, tolerance * exact) << tolerance;
   }
 }
 

@@ -319,19 +319,27 @@ L PackOrbit<L, N>::exchanged_energy() {
     const auto& observables = observables_[std::size_t(Quantity::energy)];
     std::array<PeakBracket<L>, max_energy_extremes> extremes{};
     std::array<L, max_energy_extremes> signs;
-    L count(0.0);
-    for_each_subinterval(half, Quantity::energy, L(-1e300), [&](PeakBracket<L> b, const Mask& where) {
-      const L sign = sign_of(b.d0);
-      const Mask turns = where && !(sign_of(b.d1) == sign);
-      if (!any<L>(turns)) return;
+    L count(0.0), sign_before(0.0);  // sign of the slope where the subinterval before ends
+    const auto add = [&](PeakBracket<L> b, const L& sign, const Mask& where) {
+      if (!any<L>(where)) return;
       for (L* part : {&b.v0, &b.d0, &b.v1, &b.d1}) *part = sign * *part;
       estimate_peak(b);
       for (std::size_t n = 0; n < max_energy_extremes; ++n) {
-        const Mask here = turns && count == L(double(n));
+        const Mask here = where && count == L(double(n));
         keep(b, here, extremes[n]);
         signs[n] = select<L>(here, sign, signs[n]);
       }
-      count = select<L>(turns, count + L(1.0), count);
+      count = select<L>(where, count + L(1.0), count);
+    };
+    for_each_subinterval(half, Quantity::energy, L(-1e300), [&](const PeakBracket<L>& b, const Mask& where) {
+      const L sign = sign_of(b.d0), sign_after = sign_of(b.d1);
+      // Without air, the energy turns where the rod force changes its sign: a node, on either side of which rounding
+      // gives the slope another sign.
+      PeakBracket<L> node = b;
+      node.x1 = b.x0, node.v1 = b.v0, node.d1 = b.d0;
+      add(node, sign_before, where && sign_before * sign < L(0.0));
+      add(b, sign, where && sign * sign_after < L(0.0));
+      sign_before = select<L>(where, sign_after, sign_before);
     });
     unresolved_ = unresolved_ || count > L(double(max_energy_extremes));
     L before = observables[first_node(half, 0)].value;
