@@ -158,9 +158,19 @@ VectorXd sizes_for(const FlightMap& map, const VectorXd& z, const FlightVector& 
 class PeriodicSearch {
  public:
   PeriodicSearch(const FlightVehicle& vehicle, const TrimResult& steady, const FlightVector& steps, double tolerance)
-      : map_(vehicle, steady.controls, tolerance), steps_(steps), tolerance_(tolerance), z_(map_.start(steady)) {}
+      : map_(vehicle, steady.controls, tolerance),
+        // Errors of the steps, random from one start to the next, are divided by the differences of the starts.
+        fine_(vehicle, steady.controls, std::max(1e-12, 1e-2 * tolerance)),
+        steps_(steps),
+        tolerance_(tolerance),
+        z_(map_.start(steady)) {
+    fine_.start(steady);
+  }
 
-  void command(const FlightControls& controls) { map_.command(controls); }
+  void command(const FlightControls& controls) {
+    map_.command(controls);
+    fine_.command(controls);
+  }
 
   /// False: none found near where the last one was.
   bool solve() {
@@ -173,7 +183,7 @@ class PeriodicSearch {
       if (map_.crank()) scaled[0] = gap[0] / two_pi;
       const double before = std::exchange(off_, scaled.norm());
       if (off_ <= 100.0 * tolerance_ || (iteration > 3 && off_ > 0.5 * before && off_ < 1e-6)) break;
-      if (slopes_.size() == 0 || off_ > 0.2 * before) linearise(1e-5, &gap);
+      if (slopes_.size() == 0 || off_ > 0.2 * before) linearise(map_, 1e-5, &gap);
       VectorXd correction = slopes_.partialPivLu().solve(gap);
       const double longest = correction.cwiseQuotient(sizes).cwiseAbs().maxCoeff();
       if (longest > 0.1) correction *= 0.1 / longest;
@@ -187,7 +197,7 @@ class PeriodicSearch {
   FlightVector mean() { return map_.mean(z_); }
   /// By central differences; of a crank between passages of one crank angle.
   MatrixXd monodromy() {
-    linearise(1e-4, nullptr);
+    linearise(fine_, 1e-3, nullptr);
     const Eigen::Index count = z_.size();
     if (!map_.crank()) return slopes_ + MatrixXd::Identity(count, count);
     // The time to the same crank angle changes with the start.
@@ -198,19 +208,19 @@ class PeriodicSearch {
 
  private:
   /// Slopes of the mismatch: forward differences from a gap that is known, else central ones.
-  void linearise(double share, const VectorXd* gap) {
-    const VectorXd sizes = sizes_for(map_, z_, steps_);
+  void linearise(FlightMap& map, double share, const VectorXd* gap) {
+    const VectorXd sizes = sizes_for(map, z_, steps_);
     slopes_.resize(z_.size(), z_.size());
     for (Eigen::Index n = 0; n < z_.size(); ++n) {
       VectorXd above = z_, below = z_;
       above[n] += share * sizes[n];
       below[n] -= share * sizes[n];
-      if (gap) slopes_.col(n) = (map_.mismatch(above) - *gap) / (share * sizes[n]);
-      else slopes_.col(n) = (map_.mismatch(above) - map_.mismatch(below)) / (2.0 * share * sizes[n]);
+      if (gap) slopes_.col(n) = (map.mismatch(above) - *gap) / (share * sizes[n]);
+      else slopes_.col(n) = (map.mismatch(above) - map.mismatch(below)) / (2.0 * share * sizes[n]);
     }
   }
 
-  FlightMap map_;
+  FlightMap map_, fine_;
   FlightVector steps_;
   double tolerance_;
   VectorXd z_;

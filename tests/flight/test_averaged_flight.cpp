@@ -239,6 +239,24 @@ TEST(Stability, AveragingAndFloquetTheoryAgreeWhereTheBodyIsSlow) {
   EXPECT_GT(found.modes.front().averaged->real(), 0.0);
 }
 
+TEST(Stability, FloquetExponentsDoNotDependOnTheStepsTolerance) {
+  const FlightVehicle bumblebee = flight_vehicle(read_design(WINGBEAT_DATA "/designs/insects/bumblebee.toml", {}));
+  std::vector<FlightMode> modes[2];
+  for (const auto& [n, tolerance] : {std::pair{0, 1e-8}, {1, 1e-9}}) {
+    AveragedFlight flight(bumblebee, {.tolerance = tolerance});
+    const StabilityResult found = flight_stability(flight, trim(flight, {}));
+    ASSERT_TRUE(found.periodic) << found.periodic_detail;
+    modes[n] = found.modes;
+  }
+  ASSERT_EQ(modes[0].size(), modes[1].size());
+  for (std::size_t n = 0; n < modes[0].size(); ++n) {
+    if (!modes[1][n].floquet) continue;
+    ASSERT_TRUE(modes[0][n].floquet);
+    const std::complex<double> loose = *modes[0][n].floquet, tight = *modes[1][n].floquet;
+    EXPECT_LT(std::abs(loose - tight), 2e-3 * std::abs(tight)) << tight << ' ' << modes[1][n].shape;
+  }
+}
+
 TEST(Stability, ParametersMoveTheLeastStableMode) {
   Design<double> d = flying_design("friction2022");
   const std::vector<ModeSensitivity> all =
