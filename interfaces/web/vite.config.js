@@ -41,7 +41,7 @@ const singleFile = {
     const zipped = (content) => gzipSync(content, {level: 9});
     const style = text((name) => name.endsWith('.css')),
       main = text((name) => name.endsWith('.js') && page.includes(name)),
-      flight = text((name) => /^flight_scene.*\.js$/.test(name));
+      flight = text((name) => /^scenes.*\.js$/.test(name));
     if (/\bfrom *["']\.|\bimport *["']\./.test(flight)) throw new Error('the flight view is no module of its own');
     const html = page
       .replace(/<link rel="stylesheet"[^>]*>/, () => `<style>${style}</style>`)

@@ -1,6 +1,7 @@
 #include "wingbeat/cycle/record.hpp"
 
 #include <algorithm>
+#include <type_traits>
 #include <utility>
 
 #include "wingbeat/cycle/recorded_cycle.hpp"
@@ -9,21 +10,31 @@
 namespace wingbeat {
 namespace {
 
-/// `phase_rate` receives d theta / dt [rad/s].
-template <class Recorded>
-WaveformRow row_inside(const Recorded& recorded, const solver::Step<decltype(Recorded::system)>& step,
-                       double start_time, double theta, double& phase_rate) {
-  const auto& system = recorded.system;
-  const auto result = solver::evaluate_inside<true>(system, recorded.cycle, step, theta);
-  const Motion<double> m = system.motion(theta, result.y, step.signs);
-  phase_rate = system.phase_rate(result.y);
+/// A place on a recorded cycle.
+template <class System>
+struct Place {
+  double theta;  ///< crank angle; of a direct drive the phase of the supply [rad]
+  double time;   ///< since the cycle's start [s]
+  typename System::State y;
+};
+
+/// The place at theta in a step that begins at `start_time`.
+template <class Recorded, class System = decltype(Recorded::system)>
+Place<System> place_inside(const Recorded& recorded, const solver::Step<System>& step, double start_time,
+                           double theta) {
+  const auto result = solver::evaluate_inside<true>(recorded.system, recorded.cycle, step, theta);
+  return {theta, start_time + result.dq[std::size_t(Integral::time)], result.y};
+}
+
+template <class System>
+WaveformRow row_of(const System& system, const Place<System>& place, const typename System::Signs& signs) {
+  const Motion<double> m = system.motion(place.theta, place.y, signs);
   double pitch_angle = absent;
-  if constexpr (decltype(Recorded::system)::on_hinges) {
-    if (pitches(system.vehicle)) pitch_angle = system.local_pitch(result.y);
+  if constexpr (System::on_hinges) {
+    if (pitches(system.vehicle)) pitch_angle = system.local_pitch(place.y);
   }
-  return waveform_row(system.vehicle, m, start_time + result.dq[std::size_t(Integral::time)],
-                      system.shaft_angle(theta, result.y), system.shaft_speed(result.y),
-                      system.stroke_angle(m, result.y), pitch_angle);
+  return waveform_row(system.vehicle, m, place.time, system.shaft_angle(place.theta, place.y),
+                      system.shaft_speed(place.y), system.stroke_angle(m, place.y), pitch_angle);
 }
 
 }  // namespace
@@ -56,27 +67,51 @@ WaveformRow CycleRecord::at(double theta) const {
     for (const auto* before = recorded.cycle.steps.data(); before != &step; ++before) {
       time += before->dq[std::size_t(Integral::time)];
     }
-    double phase_rate;
-    return row_inside(recorded, step, time, theta, phase_rate);
+    return row_of(recorded.system, place_inside(recorded, step, time, theta), step.signs);
   });
 }
 
 namespace {
 
-/// The row of a step at a time since the cycle's start, by Newton, and its crank angle; the step starts at
-/// `start_time`.
-template <class Recorded>
-std::pair<WaveformRow, double> row_at_time(const Recorded& recorded, std::size_t n, double start_time, double time,
-                                           double period) {
-  const auto& step = recorded.cycle.steps[n];
-  double phase_rate = recorded.system.phase_rate(step.y);
-  double theta = step.x + std::min(step.h, (time - start_time) * phase_rate);
-  WaveformRow row = row_inside(recorded, step, start_time, theta, phase_rate);
-  for (int iteration = 0; iteration < 20 && std::abs(row.time - time) > 1e-14 * period; ++iteration) {
-    theta = std::clamp(theta + (time - row.time) * phase_rate, step.x, step.x + step.h);
-    row = row_inside(recorded, step, start_time, theta, phase_rate);
+/// Moves a place on a crank's cycle by a time over which a step of fourth order has no error, by an angle exact to
+/// second order. False, nothing changed, where a state follows so quickly that it has.
+template <class System>
+bool move_by_time(const System& system, const typename System::Signs& signs, const solver::Rates<System>& rates,
+                  double time, double by, Place<System>& place) {
+  Place<System> moved{place.theta + by, place.time + time, place.y};
+  auto configuration = solver::configuration_at(system, place.theta);
+  if (!solver::move_a_little<false>(system, place.theta, by, signs, rates, moved.y, configuration)) return false;
+  const auto after = system.template rates<false>(configuration, moved.y, signs);
+  const typename System::State scale = system.error_scale(moved.y);
+  for (std::size_t n = 0; n < scale.size(); ++n) {
+    if (!(std::abs(by * (after.dy[n] - rates.dy[n])) < 1e-8 * scale[n])) return false;
   }
-  return {row, theta};
+  place = moved;
+  return true;
+}
+
+/// The place at a time since the cycle's start in step n, which begins at `start_time`: by Newton's method from `near`,
+/// a place in the step.
+template <class Recorded, class System = decltype(Recorded::system)>
+Place<System> place_at_time(const Recorded& recorded, std::size_t n, double start_time, double time, double period,
+                            const Place<System>& near) {
+  const System& system = recorded.system;
+  const auto& step = recorded.cycle.steps[n];
+  Place<System> place = near;
+  for (int iteration = 0; iteration < 20; ++iteration) {
+    const double left = time - place.time;
+    if (std::abs(left) <= 1e-14 * period && iteration > 0) break;
+    double by = system.phase_rate(place.y) * left;
+    if constexpr (System::turns) {
+      const auto rates =
+          system.template rates<false>(solver::configuration_at(system, place.theta), place.y, step.signs);
+      by *= 1.0 + 0.5 * rates.dy[0] * left;
+      const bool is_short = iteration > 0 && std::abs(left) < 1e-6 * period;
+      if (is_short && move_by_time(system, step.signs, rates, left, by, place)) break;
+    }
+    place = place_inside(recorded, step, start_time, std::clamp(place.theta + by, step.x, step.x + step.h));
+  }
+  return place;
 }
 
 /// Moves n and its start time on to the step in which `time` lies.
@@ -95,21 +130,27 @@ double CycleRecord::phase_at(double time) const {
     std::size_t n = 0;
     double start_time = 0.0;
     advance(recorded.cycle.steps, time, n, start_time);
-    return row_at_time(recorded, n, start_time, time, period()).second;
+    const auto& step = recorded.cycle.steps[n];
+    return place_at_time(recorded, n, start_time, time, period(), {step.x, start_time, step.y}).theta;
   });
 }
 
 std::vector<WaveformRow> CycleRecord::waveform(int count) const {
   return visit(*this, [&](const auto& recorded) {
+    using System = std::remove_cvref_t<decltype(recorded.system)>;
+    const auto& steps = recorded.cycle.steps;
     std::vector<WaveformRow> rows;
     rows.reserve(std::size_t(count));
     const double period_time = period();
-    std::size_t n = 0;
+    std::size_t n = 0, before = 0;
     double start_time = 0.0;
+    Place<System> place{steps[0].x, 0.0, steps[0].y};
     for (int k = 0; k < count; ++k) {
       const double time = period_time * k / (count - 1);
-      advance(recorded.cycle.steps, time, n, start_time);
-      rows.push_back(row_at_time(recorded, n, start_time, time, period_time).first);
+      advance(steps, time, n, start_time);
+      if (std::exchange(before, n) != n) place = {steps[n].x, start_time, steps[n].y};
+      place = place_at_time(recorded, n, start_time, time, period_time, place);
+      rows.push_back(row_of(recorded.system, place, steps[n].signs));
     }
     return rows;
   });

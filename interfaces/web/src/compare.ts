@@ -27,18 +27,22 @@ export class Compare {
       {state, shown} = explorer;
     const full = state.pins.length >= maxPins;
     byId('pin').setAttribute('aria-disabled', String(full));
-    byId('pin').textContent = full
-      ? `no more than ${maxPins} designs`
-      : `pin this design as ${pinName(state.pins.length)}`;
+    const label = full ? `no more than ${maxPins} designs` : `pin this design as ${pinName(state.pins.length)}`;
+    if (byId('pin').textContent !== label) byId('pin').textContent = label;
     byId('unpin').hidden = state.pins.length < 2;
     this.list();
     if (shown && shown !== this.tabled) {
       this.tabled = shown;
-      const pins = shown.pins.map((pin, n) => ({name: pinName(n), report: pin.solved.report}));
-      const paper = paperTable(explorer);
-      byId('paper-values').replaceChildren(...(paper ? [paper] : []));
-      showMetrics(byId('metrics'), explorer.core.tables.metrics, shown.solved.report, pins);
+      explorer.inView.draw(byId('metrics'), () => this.tables(shown));
     }
+  }
+
+  private tables(shown: Shown) {
+    const {explorer} = this;
+    const pins = shown.pins.map((pin, n) => ({name: pinName(n), report: pin.solved.report}));
+    const paper = paperTable(explorer);
+    byId('paper-values').replaceChildren(...(paper ? [paper] : []));
+    showMetrics(byId('metrics'), explorer.core.tables.metrics, shown.solved.report, pins);
   }
 
   private list() {

@@ -1,6 +1,6 @@
 // A control for every key of the vehicle file, from the library's table: slider, value with unit, sensitivities.
 import type {Key, Stated, Values} from './core';
-import {html} from './dom';
+import {html, setValue} from './dom';
 import {exact, readable, shownUnit} from './quantities';
 
 export interface Sensitivity {
@@ -77,18 +77,26 @@ export class Controls {
 
   /** Builds the controls anew where keys come or go, else moves them. `base` are the values of the file itself. */
   show(stated: Stated, values: Values, base: Values) {
-    const keys = this.keys.filter(
-      (key) => hasPlace(key, values) && !(typed.test(key.key.split('.').pop() ?? '') && !key.number),
-    );
-    const layout = keys.map((k) => `${k.key}${values[k.key] === undefined ? '-' : '+'}`).join();
-    if (layout !== this.layout || stated.text !== this.text) {
+    if (!this.fit(stated, values)) {
+      const keys = this.shownKeys(values);
       const focused = this.parent.contains(document.activeElement) ? document.activeElement?.id : '';
       this.build(keys, values, base);
-      this.layout = layout;
+      this.layout = layoutOf(keys, values);
       this.text = stated.text;
       if (focused) document.getElementById(focused)?.focus();
     }
     for (const row of this.rows) this.move(row, values[row.key.key], row.key.key in stated.changes);
+  }
+
+  /** Whether the controls are those of the keys, so that they need only be moved. */
+  fit(stated: Stated, values: Values): boolean {
+    return stated.text === this.text && layoutOf(this.shownKeys(values), values) === this.layout;
+  }
+
+  private shownKeys(values: Values): Key[] {
+    return this.keys.filter(
+      (key) => hasPlace(key, values) && !(typed.test(key.key.split('.').pop() ?? '') && !key.number),
+    );
   }
 
   sensitivities(found: Record<string, Sensitivity>) {
@@ -280,15 +288,18 @@ export class Controls {
     if (!row.refused) this.write(row);
     if (row.slider && row.range && typeof value === 'number' && !row.held) {
       const place = String(placeOf(row.range, value));
-      if (row.slider.value !== place) row.slider.value = place;
+      setValue(row.slider, place);
     }
     if (row.slider?.getAttribute('aria-valuetext') !== text) row.slider?.setAttribute('aria-valuetext', text);
   }
 
   private write({field, shown}: Row) {
-    if (field.value !== shown) field.value = shown;
+    setValue(field, shown);
   }
 }
+
+const layoutOf = (keys: Key[], values: Values) =>
+  keys.map((k) => `${k.key}${values[k.key] === undefined ? '-' : '+'}`).join();
 
 function valueAt(range: NonNullable<Row['range']>, place: number, whole: boolean): number {
   const share = place / steps;

@@ -30,8 +30,17 @@ export function svg<K extends keyof SVGElementTagNameMap>(
   return element;
 }
 
+/** Sets attributes that are not yet so: setting one to what it is would have the browser lay out the element anew. */
 export function set(element: Element, attributes: Record<string, string | number>) {
-  for (const [name, value] of Object.entries(attributes)) element.setAttribute(name, String(value));
+  for (const [name, value] of Object.entries(attributes)) {
+    const text = String(value);
+    if (element.getAttribute(name) !== text) element.setAttribute(name, text);
+  }
+}
+
+/** Sets what a control shows where it is another: a browser looks through all forms of a page after each setting. */
+export function setValue(control: HTMLInputElement | HTMLSelectElement, value: string) {
+  if (control.value !== value) control.value = value;
 }
 
 export function byId<T extends HTMLElement>(id: string): T {
@@ -49,9 +58,7 @@ export function update(element: Element, children: Iterable<Node>) {
   for (const child of [...children]) {
     const next: ChildNode | null = old?.nextSibling ?? null;
     if (!old) element.append(child);
-    else if (old.nodeName !== child.nodeName) old.replaceWith(child);
-    else if (old instanceof Element) updateElement(old, child as Element);
-    else if (old.nodeValue !== child.nodeValue) old.nodeValue = child.nodeValue;
+    else if (!old.isEqualNode(child)) updateNode(old, child);
     old = next;
   }
   while (old) {
@@ -70,8 +77,14 @@ export function layerOf(picture: SVGSVGElement, name: string): SVGGElement {
   return layer;
 }
 
+function updateNode(old: ChildNode, wanted: Node) {
+  if (old.nodeName !== wanted.nodeName) old.replaceWith(wanted);
+  else if (old instanceof Element) updateElement(old, wanted as Element);
+  else old.nodeValue = wanted.nodeValue;
+}
+
 function updateElement(old: Element, wanted: Element) {
-  for (const {name} of [...old.attributes]) if (!wanted.hasAttribute(name)) old.removeAttribute(name);
+  for (const name of old.getAttributeNames()) if (!wanted.hasAttribute(name)) old.removeAttribute(name);
   for (const {name, value} of wanted.attributes) if (old.getAttribute(name) !== value) old.setAttribute(name, value);
   update(old, wanted.childNodes);
 }

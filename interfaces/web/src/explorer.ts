@@ -3,6 +3,7 @@ import {type Controls, type Sensitivity} from './controls';
 import {type Core, type Problem, Refused, type RunOptions, type Values} from './core';
 import {byId} from './dom';
 import {Channel, type Outcome} from './engine';
+import {InView} from './in_view';
 import {linkOf} from './link';
 import {numberOf} from './results';
 import {type Design, History, identityOf, maxPins, runOptions, type State} from './state';
@@ -27,10 +28,16 @@ export interface Going {
   /** A step of its own, however soon it follows the one before. */
   apart?: boolean;
 }
+/** Results and how many rows of a cycle were asked for. */
+interface Kept {
+  computed: Computed;
+  rows: number;
+}
 export type Work = 'solving' | 'solved' | 'failed';
 
 const solveDeadline = 20_000,
   derivativeDeadline = 30_000,
+  rows = {resting: 361, moving: 181}, // of a cycle
   kept = 24, // designs
   longest = 500; // entries of the browser's history
 /** Entries of the browser's history outlive the page; those of another page's are not taken for this one's. */
@@ -46,6 +53,9 @@ export class Explorer {
   /** The largest value of each number among the vehicles of the page: a scale for keys that are 0 in one of them. */
   readonly typical: Readonly<Record<string, number>>;
   work: Work = 'solving';
+  /** A slider moves: what nobody sees is drawn once it rests. */
+  private moving = false;
+  readonly inView = new InView(() => this.moving);
   /** When the state was taken, as performance.now(). */
   asked = 0;
   /** Why the state has no results, where work is "failed". */
@@ -53,13 +63,14 @@ export class Explorer {
   private readonly solver: Channel;
   private readonly slopes: Channel;
   private readonly flights: Channel;
-  private readonly cache = new Map<string, Computed>();
+  private readonly cache = new Map<string, Kept>();
   private readonly bases = new Map<string, Values>();
   private readonly listeners: (() => void)[] = [];
   private readonly visited = new Map<number, State>();
   private written = 0;
   private good: State;
   private settle = 0;
+  private built = Promise.resolve();
   private step = false;
   private idlers: (() => void)[] = [];
   /** Fields beside those of the keys that show why what they ask for is refused. */
@@ -112,7 +123,7 @@ export class Explorer {
       this.refuse(error, origin);
       return false;
     }
-    Object.assign(this, {state, values, base});
+    Object.assign(this, {state, values, base, moving: !final});
     if (from !== 'user') this.history.visit(state);
     if (from === 'browser') this.step = false;
     else if (final) this.step = from === 'undo' || this.history.commit(state, apart ? '' : origin) || this.step;
@@ -122,8 +133,15 @@ export class Explorer {
       for (const field of this.fields.values()) field.accept();
     }
     this.say('');
-    this.controls.show(state.design, values, base);
+    this.showControls();
     return this.solve(origin, final && !keepAddress);
+  }
+
+  /** Controls of other keys are built in a task of their own, for they take as long as the rest of a change. */
+  private showControls() {
+    const show = () => this.controls.show(this.state.design, this.values, this.base);
+    if (this.controls.fit(this.state.design, this.values)) return show();
+    this.built = new Promise((done) => setTimeout(() => done(show())));
   }
 
   /** The values of a vehicle file itself. */
@@ -220,18 +238,20 @@ export class Explorer {
     const {state} = this;
     const options = runOptions(state);
     const wanted = [state.design, ...state.pins];
-    const missing = wanted.filter((design) => !this.cache.has(identityOf(design, options)));
+    const fine = this.moving ? rows.moving : rows.resting;
+    const missing = wanted.filter((design) => !((this.cache.get(identityOf(design, options))?.rows ?? 0) >= fine));
     this.work = 'solving';
     this.asked = performance.now();
     clearTimeout(this.settle);
     this.notify();
     if (missing.length) {
       const stated = missing.map(({text, changes}) => ({text, changes}));
-      const outcome = await this.solver.ask('designs', {designs: stated, options});
+      const outcome = await this.solver.ask('designs', {designs: stated, options, rows: fine});
       if (outcome.kind !== 'done') return this.unsolved(state, outcome, origin);
-      missing.forEach((design, n) => this.keep(design, options, outcome.answer[n]!));
+      missing.forEach((design, n) => this.keep(design, options, {computed: outcome.answer[n]!, rows: fine}));
     }
-    const [current, ...pins] = wanted.map((design) => this.cache.get(identityOf(design, options)));
+    await this.built;
+    const [current, ...pins] = wanted.map((design) => this.cache.get(identityOf(design, options))?.computed);
     if (!current || pins.some((pin) => !pin)) throw new Error('more pins than designs are kept');
     // Of a slider that moves every design is drawn, though the next one is asked for already.
     this.shown = {...current, state, pins: pins as Computed[]};
@@ -242,7 +262,10 @@ export class Explorer {
     window.firstNumber ??= performance.now();
     this.notify();
     if (state !== this.state) return false;
-    this.settle = window.setTimeout(() => void this.settled(write), write ? 0 : 120);
+    this.settle = window.setTimeout(
+      () => void (this.moving ? this.rested(write) : this.settled(write)),
+      write ? 0 : 120,
+    );
     this.rest();
     return true;
   }
@@ -261,8 +284,8 @@ export class Explorer {
     return false;
   }
 
-  private keep(design: Design, options: RunOptions, computed: Computed) {
-    this.cache.set(identityOf(design, options), computed);
+  private keep(design: Design, options: RunOptions, found: Kept) {
+    this.cache.set(identityOf(design, options), found);
     for (const oldest of this.cache.keys()) {
       if (this.cache.size <= kept) break;
       this.cache.delete(oldest);
@@ -275,6 +298,13 @@ export class Explorer {
   }
   again() {
     return this.solve('', true);
+  }
+
+  /** The slider has stopped, or is held: the cycle in all its rows, and what is out of sight. */
+  private rested(write: boolean) {
+    this.moving = false;
+    this.inView.flush();
+    return this.solve('', write);
   }
 
   /** When nothing is being solved for the state. */

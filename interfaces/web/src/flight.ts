@@ -5,22 +5,23 @@ import {byId} from './dom';
 import {unpackedText} from './embedded';
 import type {Explorer, Shown} from './explorer';
 import {chordAngles, fate, Flight} from './flight_motion';
-import type * as sceneModule from './flight_scene';
-import type {FlightScene, Look} from './flight_scene';
+import type {Look} from './flight_scene';
+import type * as scenesModule from './scenes';
+import type {FlightPicture, Scenes} from './scenes';
 import {FreeFlight, hasBody} from './free_flight';
 import {atShare} from './measured';
 import {digits, readable} from './quantities';
 import {numberOf} from './results';
 
-type SceneModule = typeof sceneModule;
+type ScenesModule = typeof scenesModule;
 
 /** From the page itself where it stands in it, else from beside it. */
-async function loadScene(): Promise<SceneModule> {
+async function loadScenes(): Promise<ScenesModule> {
   const text = await unpackedText('wingbeat-flight');
-  if (text === null) return import('./flight_scene');
+  if (text === null) return import('./scenes');
   const url = URL.createObjectURL(new Blob([text], {type: 'text/javascript'}));
   try {
-    return (await import(/* @vite-ignore */ url)) as SceneModule;
+    return (await import(/* @vite-ignore */ url)) as ScenesModule;
   } finally {
     URL.revokeObjectURL(url);
   }
@@ -32,8 +33,9 @@ const let_go = 6, // wing lengths above the ground
 export class FlightView {
   /** Of a vehicle with a body, once it has been asked for. */
   free: FreeFlight | null = null;
-  private module: SceneModule | null = null;
-  private scene: FlightScene | null = null;
+  private module: ScenesModule | null = null;
+  private scenes: Scenes | null = null;
+  private scene: FlightPicture | null = null;
   private flight: Flight | null = null;
   private columns: Columns | null = null;
   private angles: Float64Array | null = null;
@@ -69,7 +71,9 @@ export class FlightView {
     }
     byId('flight-note').textContent = 'Loading.';
     try {
-      this.module ??= await loadScene();
+      this.module ??= await loadScenes();
+      this.scenes ??= new this.module.Scenes(this.canvas);
+      await this.scenes.ready;
       byId('flight-view').hidden = false;
       this.lookOf = '';
       this.shown = null;
@@ -128,7 +132,8 @@ export class FlightView {
     };
     this.free ??= new FreeFlight(
       this.explorer,
-      this.module!,
+      this.module!.FlightWorker,
+      this.scenes!,
       this.canvas,
       colours,
       () => wingLength(this.shown!.values),
@@ -146,7 +151,7 @@ export class FlightView {
     if (of === this.lookOf && this.scene) return;
     this.lookOf = of;
     this.scene?.dispose();
-    this.scene = new this.module!.FlightScene(this.canvas, look);
+    this.scene = this.scenes!.flight(look);
     this.resize();
   }
 

@@ -1,4 +1,4 @@
-// The 3D picture of a flying vehicle, by three.js: loaded when it is asked for, so it imports nothing of the page.
+// The 3D picture of a flying vehicle, by three.js.
 import {
   ArrowHelper,
   BufferGeometry,
@@ -15,6 +15,7 @@ import {
   Shape,
   ShapeGeometry,
   Vector3,
+  type WebGLRenderer,
 } from 'three';
 import {Stage} from './stage';
 
@@ -47,8 +48,8 @@ export class FlightScene extends Stage {
   private readonly lift: ArrowHelper;
   private readonly weight: ArrowHelper;
 
-  constructor(canvas: HTMLCanvasElement, look: Look) {
-    super(canvas, look.colours.paper, 200);
+  constructor(renderer: WebGLRenderer, look: Look) {
+    super(renderer, look.colours.paper, 200);
     const {colours, chord} = look;
     this.scene.add(new GridHelper(24, 24, colours.rule, colours.rule), ruler(colours.rule));
     const body = new Mesh(
@@ -129,7 +130,3 @@ function ruler(colour: string): LineSegments {
   const geometry = new BufferGeometry().setAttribute('position', new Float32BufferAttribute(points, 3));
   return new LineSegments(geometry, new LineBasicMaterial({color: colour}));
 }
-
-// Loaded together, as one file.
-export {default as FlightWorker} from './flight_worker?worker&inline';
-export {FreeScene} from './free_scene';

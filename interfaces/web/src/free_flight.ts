@@ -6,8 +6,8 @@ import {Channel, type Outcome} from './engine';
 import type {Explorer} from './explorer';
 import type {FlightTasks, Push, Wish} from './flight_core';
 import {FlightTrack, roundBelow} from './flight_track';
-import type * as sceneModule from './flight_scene';
-import type {FreeColours, FreeScene} from './free_scene';
+import type {FreeColours} from './free_scene';
+import type {FreePicture, Scenes} from './scenes';
 import {FlightPanel} from './flight_panel';
 import {identityOf} from './state';
 
@@ -30,7 +30,7 @@ export class FreeFlight {
   time = 0;
   private compiled: Promise<WebAssembly.Module> | null = null;
   private engine: Channel<FlightTasks> | null = null;
-  private scene: FreeScene | null = null;
+  private scene: FreePicture | null = null;
   private wish: Omit<Wish, 'until'> = {};
   private asked = false;
   private flies = false;
@@ -45,7 +45,8 @@ export class FreeFlight {
 
   constructor(
     private readonly explorer: Explorer,
-    private readonly module: typeof sceneModule,
+    private readonly FlightWorker: new () => Worker,
+    private readonly scenes: Scenes,
     private readonly canvas: HTMLCanvasElement,
     private readonly colours: () => FreeColours,
     /** Length of a wing [m]. */
@@ -102,7 +103,7 @@ export class FreeFlight {
   /** A library of flights in a worker of its own. */
   async channel() {
     this.compiled ??= compiledFlight();
-    return new Channel<FlightTasks>(await this.compiled, patience, patience, () => new this.module.FlightWorker());
+    return new Channel<FlightTasks>(await this.compiled, patience, patience, () => new this.FlightWorker());
   }
 
   private refused(outcome: Exclude<Outcome<unknown>, {kind: 'done'}>) {
@@ -215,7 +216,7 @@ export class FreeFlight {
   rebuild() {
     if (!this.begun) return;
     this.scene?.dispose();
-    this.scene = new this.module.FreeScene(this.canvas, this.begun, this.colours());
+    this.scene = this.scenes.free(this.begun, this.colours());
     this.scene.extend(this.track.trace.place.slice(0, this.drawn));
     this.resize();
   }

@@ -1,5 +1,5 @@
 // The 3D picture of a vehicle in free flight: body with attitude, wings with their own strokes, ground, path and aim.
-// Loaded with flight_scene.ts. Lengths are those of wings; x is east, y up, z south.
+// Lengths are those of wings; x is east, y up, z south.
 import {
   BufferAttribute,
   BufferGeometry,
@@ -19,6 +19,7 @@ import {
   ShapeGeometry,
   SphereGeometry,
   Vector3,
+  type WebGLRenderer,
 } from 'three';
 import {Stage} from './stage';
 import type {FlightBegun} from './answers';
@@ -85,8 +86,8 @@ export class FreeScene extends Stage {
   private readonly unit: number; // [m]
   private points = 0;
 
-  constructor(canvas: HTMLCanvasElement, begun: FlightBegun, colours: FreeColours) {
-    super(canvas, colours.paper, 400);
+  constructor(renderer: WebGLRenderer, begun: FlightBegun, colours: FreeColours) {
+    super(renderer, colours.paper, 400);
     this.unit = begun.outline.at(-1)?.[0] ?? 0.05;
     this.grid = new GridHelper(60, 60, colours.rule, colours.rule);
     this.scene.add(this.grid);

@@ -54,6 +54,7 @@ export class Sound {
       return this.say(null);
     }
     if (!this.context) {
+      await new Promise((done) => setTimeout(done)); // a browser takes up to 50 ms for its first context
       this.context = new AudioContext();
       this.gain = new GainNode(this.context, {gain: 0});
       this.oscillator = new OscillatorNode(this.context, {frequency: 1});

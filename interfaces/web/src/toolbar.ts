@@ -1,7 +1,7 @@
 // Choosing vehicles, motors and the conditions of a run; undo and redo; playback; what is copied.
 import {identity} from './about';
 import {Refused, type Motor} from './core';
-import {byId, html} from './dom';
+import {byId, html, setValue} from './dom';
 import {pythonProgram, shellCommand} from './elsewhere';
 import type {Explorer} from './explorer';
 import {powerSeries} from './pictures/cycle_plots';
@@ -55,9 +55,9 @@ export class Toolbar {
     if (names.length !== vehicle.options.length) {
       vehicle.replaceChildren(...names.map((name) => html('option', {value: name}, name)));
     }
-    vehicle.value = state.design.name;
-    byId<HTMLSelectElement>('condition').value = state.condition;
-    byId<HTMLSelectElement>('hold').value = state.hold;
+    setValue(vehicle, state.design.name);
+    setValue(byId<HTMLSelectElement>('condition'), state.condition);
+    setValue(byId<HTMLSelectElement>('hold'), state.hold);
     byId('held').hidden = state.hold === 'voltage';
     if (!this.heldRefused || state.hold === 'voltage') this.acceptHeld();
     // A disabled button would lose the focus of who has just pressed it.
@@ -66,8 +66,10 @@ export class Toolbar {
     enable('redo', explorer.history.canRedo);
     enable('restore', Object.keys(state.design.changes).length > 0);
     byId('print-state').textContent = `${describeDesign(state.design, state.condition)}; ${identity}`;
-    byId('shell').textContent = shellCommand(state, isOwn(state.design));
-    byId('python').textContent = pythonProgram(state, isOwn(state.design));
+    explorer.inView.draw(byId('shell'), () => {
+      byId('shell').textContent = shellCommand(state, isOwn(state.design));
+      byId('python').textContent = pythonProgram(state, isOwn(state.design));
+    });
     clearTimeout(this.motorClock);
     this.motorClock = window.setTimeout(() => this.showMotors(), this.motorsOf ? 150 : 0);
   }
@@ -125,7 +127,7 @@ export class Toolbar {
         html('option', {value: m.model, disabled: m.refused !== null, title: m.refused ?? ''}, m.model),
       ),
     );
-    select.value = present?.model ?? (changed ? '-' : '');
+    setValue(select, present?.model ?? (changed ? '-' : ''));
   }
 
   // ---- conditions, and what is held
@@ -187,7 +189,7 @@ export class Toolbar {
     this.heldRefused = false;
     byId('held-note').textContent = '';
     held.removeAttribute('aria-invalid');
-    held.value = hold === 'voltage' ? '' : readable(value, heldUnit[hold], 6);
+    setValue(held, hold === 'voltage' ? '' : readable(value, heldUnit[hold], 6));
   }
 
   // ---- undo and redo

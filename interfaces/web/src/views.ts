@@ -1,7 +1,7 @@
 // What the page shows of results: headline, mechanism, flows, cycle, tables. Each is of the state of explorer.shown;
 // where that is not the state of the page, the page says so.
 import type {Columns, Mechanism} from './core';
-import {byId, html} from './dom';
+import {byId, html, setValue} from './dom';
 import type {Explorer, Shown} from './explorer';
 import {type Abscissa, CyclePlots} from './pictures/cycle_plots';
 import {match, type Matched, type Measured} from './measured';
@@ -51,7 +51,7 @@ export class Views {
       set: (on) => this.play(on),
     });
     this.flow = new LiveFlow(document.querySelector<SVGSVGElement>('#sankey')!);
-    this.plots = new CyclePlots(byId('plots'), (share) => {
+    this.plots = new CyclePlots(byId('plots'), explorer.inView, (share) => {
       this.pause();
       this.playback.show(share);
     });
@@ -138,8 +138,9 @@ export class Views {
     const other = this.ghost?.solved.columns;
     this.ghostPeaks = other?.time_s ? drawn.peaksOf(other) : null;
     showHeadline(byId('headline-numbers'), solved, this.explorer.core.tables.metrics);
-    this.drawFlows();
-    showBalance(byId('balance'), cycle ? solved.balance : null);
+    const {inView} = this.explorer;
+    inView.draw(document.querySelector('#sankey')!, () => this.drawFlows());
+    inView.draw(byId('balance'), () => showBalance(byId('balance'), cycle ? solved.balance : null));
     this.drawCycle();
     if (!cycle) this.playback.share = 0;
     this.drawInstant(this.playback.share);
@@ -212,6 +213,7 @@ export class Views {
   private drawInstant(share: number) {
     if (!this.drawn) return;
     const {mechanism, solved, startUp} = this.drawn,
+      {inView} = this.explorer,
       cycle = this.cycle;
     const picture = document.querySelector<SVGSVGElement>('#mechanism')!;
     let rest = null;
@@ -231,10 +233,10 @@ export class Views {
         : null;
     drawn.drawMechanism(picture, this.picture!, instant, this.range, ghost, rest);
     this.touch.show(this.picture!, instant);
-    this.flow.show(share);
+    inView.show(document.querySelector('#sankey')!, () => this.flow.show(this.playback.share));
     for (const follow of this.followers) follow(share, this.playback?.playing ?? false);
     const scrub = byId<HTMLInputElement>('scrub');
-    if (document.activeElement !== scrub) scrub.value = String(Math.round(share * 1000));
+    if (document.activeElement !== scrub) setValue(scrub, String(Math.round(share * 1000)));
   }
 
   pause() {

@@ -14,7 +14,8 @@ export interface Computed {
   startUp: StartUp | null;
 }
 export interface Tasks {
-  designs: {ask: {designs: Stated[]; options: RunOptions}; answer: Computed[]};
+  /** `rows` of a cycle. */
+  designs: {ask: {designs: Stated[]; options: RunOptions; rows: number}; answer: Computed[]};
   gradients: {
     ask: {stated: Stated; keys: string[]; options: RunOptions};
     answer: Record<string, (number | null)[]>;
@@ -35,12 +36,13 @@ export interface Tasks {
 export type Kind = keyof Tasks;
 export type Request = {[K in Kind]: {id: number; kind: K; ask: Tasks[K]['ask']}}[Kind];
 
+/** Of a cycle that is compared with a measured one. */
 const rows = 361;
 const fullTurn = Float64Array.from({length: 181}, (_, n) => (2 * Math.PI * n) / 180);
 
 function computed(library: Core, stated: Stated, options: RunOptions): Computed {
   const values = library.values(stated);
-  const solved = library.solve(stated, {...options, rows});
+  const solved = library.solve(stated, options);
   const mechanism = library.mechanism(stated, fullTurn);
   const moves = solved.columns.time_s || solved.report.status === null || !solved.reached;
   return {values, solved, mechanism, startUp: moves ? null : library.startUp(stated, options)};
@@ -144,7 +146,7 @@ function answer(library: Core, request: Request): Tasks[Kind]['answer'] {
   const {kind, ask} = request;
   switch (kind) {
     case 'designs':
-      return ask.designs.map((stated) => computed(library, stated, ask.options));
+      return ask.designs.map((stated) => computed(library, stated, {...ask.options, rows: ask.rows}));
     case 'gradients':
       return library.gradients(ask.stated, ask.keys, ask.options);
     case 'report':

@@ -20,7 +20,8 @@ export function serve<Library, Request extends {id: number}>(
   start: (compiled: WebAssembly.Module) => Promise<Library>,
   answer: (library: Library, request: Request) => unknown,
 ) {
-  let library: Promise<Library> | null = null;
+  let library: Promise<Library> | null = null,
+    begun = false;
   self.onmessage = async (event: MessageEvent<Request | {compiled: WebAssembly.Module}>) => {
     if ('compiled' in event.data) {
       library = start(event.data.compiled);
@@ -30,7 +31,8 @@ export function serve<Library, Request extends {id: number}>(
     let reply: Reply;
     try {
       const started = await library!;
-      self.postMessage({id, begun: true} satisfies Reply);
+      if (!begun) self.postMessage({id, begun: true} satisfies Reply);
+      begun = true;
       reply = {id, answer: answer(started, event.data)};
     } catch (error) {
       reply = error instanceof Refused ? {id, refused: error.problems} : {id, broken: String(error)};

@@ -185,6 +185,9 @@ test('the flight plays in the slow motion chosen; set-points, wind and push act 
 
 test('stop ends the worker, another vehicle ends the flight, leaving 3D too', async () => {
   const workers = () => page.workers().length;
+  await page.click('#fly'); // the worker that draws stays
+  await page.waitForSelector('#flight-view:not([hidden])');
+  await page.click('#fly');
   await choose(page, '#vehicle', flying);
   await page.waitForTimeout(500);
   const before = workers();

@@ -271,3 +271,76 @@ test('reduced motion: nothing moves by itself', async () => {
   assert.deepEqual(problems, []);
   await context.close();
 });
+
+test('while a slider moves: what is out of sight waits, no choice is set anew; at rest all is of the last design', async () => {
+  const {page, context, problems} = await open(browser, server.url);
+  const moving = await page.evaluate(async () => {
+    const {explorer} = window;
+    await new Promise((done) => setTimeout(done, 500)); // what is seen is known by then
+    const {set} = Object.getOwnPropertyDescriptor(HTMLSelectElement.prototype, 'value');
+    let chosen = 0;
+    Object.defineProperty(HTMLSelectElement.prototype, 'value', {
+      ...Object.getOwnPropertyDescriptor(HTMLSelectElement.prototype, 'value'),
+      set(value) {
+        ++chosen;
+        set.call(this, value);
+      },
+    });
+    const read = () => ({
+      metrics: document.querySelector('#metrics').textContent,
+      power: document.querySelector('#plot-power path.curve').getAttribute('d'),
+      headline: document.querySelector('#headline-numbers').textContent,
+      rows: explorer.shown.solved.columns.time_s.length,
+    });
+    const before = read();
+    for (let n = 0; n < 5; ++n) {
+      const going = explorer.change({'supply.voltage': String(2.6 + 0.01 * n)}, {final: false});
+      await Promise.all([going, explorer.idle()]);
+    }
+    return {before, after: read(), chosen};
+  });
+  const {before, after} = moving;
+  assert.equal(moving.chosen, 0);
+  assert.notEqual(after.headline, before.headline);
+  assert.equal(after.metrics, before.metrics);
+  assert.equal(after.power, before.power);
+  assert.ok(after.rows < before.rows);
+  await page.waitForFunction((rows) => window.explorer.shown.solved.columns.time_s.length === rows, before.rows);
+  const shown = await page.evaluate(() => [
+    document.querySelector('#metrics').textContent,
+    document.querySelector('#plot-power path.curve').getAttribute('d'),
+  ]);
+  assert.notEqual(shown[0], before.metrics);
+  assert.notEqual(shown[1], before.power);
+  // The same as of a change that is final at once.
+  const fresh = await page.evaluate(async () => {
+    await window.explorer.change({'supply.voltage': '2.7'});
+    await window.explorer.change({'supply.voltage': '2.64'});
+    return [
+      document.querySelector('#metrics').textContent,
+      document.querySelector('#plot-power path.curve').getAttribute('d'),
+    ];
+  });
+  assert.deepEqual(shown, fresh);
+  assert.deepEqual(problems, []);
+  await context.close();
+});
+
+test('pictures in 3D are drawn in a worker, not by the page', async () => {
+  const {page, context, problems} = await open(browser, server.url);
+  await page.click('#fly');
+  await page.waitForSelector('#flight-view:not([hidden])');
+  await page.waitForTimeout(1500);
+  const refused = await page.evaluate(() => {
+    try {
+      document.querySelector('#flight').getContext('webgl2');
+      return '';
+    } catch (error) {
+      return error.name;
+    }
+  });
+  assert.equal(refused, 'InvalidStateError'); // the canvas has been given away
+  assert.ok((await page.locator('#flight').screenshot()).length > 4000, 'nothing is drawn');
+  assert.deepEqual(problems, []);
+  await context.close();
+});

@@ -235,7 +235,7 @@ for (const [name, url] of [
     });
     if (name === 'hosted')
       assert.ok(
-        asked.some((a) => /flight_scene.*\.js$/.test(a)),
+        asked.some((a) => /scenes.*\.js$/.test(a)),
         asked.join(),
       );
     const height = async () => {

@@ -5,15 +5,15 @@ import {fileURLToPath} from 'node:url';
 import {build} from 'esbuild';
 import {sequence} from './designs.mjs';
 
-let state, link, quantities, elsewhere, hover, measured;
+let state, link, quantities, elsewhere, hover, measured, axes;
 before(async () => {
   const compiled = async (name) => {
     const entry = fileURLToPath(new URL(`../src/${name}.ts`, import.meta.url));
     const {outputFiles} = await build({entryPoints: [entry], bundle: true, format: 'esm', write: false});
     return import(`data:text/javascript;base64,${Buffer.from(outputFiles[0].contents).toString('base64')}`);
   };
-  [state, link, quantities, elsewhere, hover, measured] = await Promise.all(
-    ['state', 'link', 'quantities', 'elsewhere', 'hover', 'measured'].map(compiled),
+  [state, link, quantities, elsewhere, hover, measured, axes] = await Promise.all(
+    ['state', 'link', 'quantities', 'elsewhere', 'hover', 'measured', 'pictures/axes'].map(compiled),
   );
 });
 
@@ -258,4 +258,35 @@ test('a table that is no measured cycle is refused with what is missing', () => 
   assert.throws(read('time_s,b\n1,2\n3,4\n'), /no column of a waveform file/);
   assert.throws(read('time_s,current_a\n1,2\n'), /at least two rows/);
   assert.throws(read(''), /missing/);
+});
+
+test('lines of a curve pass closely by all of its points, and keep ends and kinks', () => {
+  const next = sequence(7);
+  const curves = [
+    (t) => 60 * Math.sin(7 * t) + 20 * Math.cos(23 * t),
+    (t) => Math.abs(40 * Math.sin(5 * t)), // kinks
+    (t) => (t > 0.4 ? 50 : -50), // a jump
+    () => 12.5, // no change
+    () => 100 * next(), // no two alike
+  ];
+  for (const curve of curves) {
+    const x = Float64Array.from({length: 361}, (_, n) => 52 + n),
+      y = x.map((at) => 75 + curve((at - 52) / 360));
+    const path = axes.linesOf(x, y);
+    const ends = path
+      .slice(1)
+      .split('L')
+      .map((p) => p.split(',').map(Number));
+    assert.deepEqual(ends[0], [x[0], Math.round(100 * y[0]) / 100]);
+    assert.deepEqual(ends.at(-1), [x[360], Math.round(100 * y[360]) / 100]);
+    let line = 0;
+    x.forEach((at, n) => {
+      while (line < ends.length - 2 && at > ends[line + 1][0]) ++line;
+      const [[x0, y0], [x1, y1]] = [ends[line], ends[line + 1]];
+      const there = y0 + ((at - x0) / (x1 - x0)) * (y1 - y0);
+      assert.ok(Math.abs(there - y[n]) < 0.11, `${there} for ${y[n]} at ${at}`);
+    });
+    if (curve === curves[3]) assert.equal(ends.length, 2);
+    if (curve === curves[0]) assert.ok(ends.length < 200, `${ends.length} points`);
+  }
 });

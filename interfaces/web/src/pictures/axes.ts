@@ -75,3 +75,33 @@ export function clickable(picture: SVGSVGElement, frame: Frame, clicked: (place:
   surface.addEventListener('click', (event) => clicked(placeOf(event, picture, frame)));
   picture.append(surface);
 }
+
+/** How far lines may pass by the points between their ends, in units of a picture. */
+const close = 0.1;
+
+/** Lines through points, x ascending, as a path: of those that a line passes closely by only the ends. */
+export function linesOf(x: Float64Array, y: Float64Array): string {
+  let path = '',
+    start = -1, // of the present line
+    least = -Infinity, // of its slope, so that it passes closely by all points so far
+    largest = Infinity;
+  const go = (n: number) => {
+    path += `${start < 0 ? 'M' : 'L'}${Math.round(100 * x[n]!) / 100},${Math.round(100 * y[n]!) / 100}`;
+    start = n;
+    least = -Infinity;
+    largest = Infinity;
+  };
+  for (let n = 0; n < x.length; ++n) {
+    if (start < 0) {
+      go(n);
+      continue;
+    }
+    const along = () => x[n]! - x[start]!;
+    const slope = (off: number) => (y[n]! + off - y[start]!) / along();
+    if (!(slope(0) >= least && slope(0) <= largest)) go(n - 1);
+    least = Math.max(least, slope(-close));
+    largest = Math.min(largest, slope(close));
+  }
+  if (start >= 0 && start < x.length - 1) go(x.length - 1);
+  return path;
+}

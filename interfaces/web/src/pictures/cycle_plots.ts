@@ -1,11 +1,11 @@
 // One cycle in panels, one below the other, with one cursor through all of them.
 import {scaleLinear} from 'd3-scale';
-import {line} from 'd3-shape';
 import type {Columns} from '../core';
 import {html, set, svg, update} from '../dom';
 import {digits, scaleFor, shownUnit, withMinus} from '../quantities';
+import type {InView} from '../in_view';
 import {atShare, type Matched} from '../measured';
-import {extent, type Frame, numbersBelow, numbersBeside, placeOf, sayNothing} from './axes';
+import {extent, type Frame, linesOf, numbersBelow, numbersBeside, placeOf, sayNothing} from './axes';
 
 interface Panel {
   id: string;
@@ -69,7 +69,11 @@ export class CyclePlots {
   private reading: number | null = null;
 
   /** `scrub` receives the share of the cycle that the user points at. */
-  constructor(parent: HTMLElement, scrub: (share: number) => void) {
+  constructor(
+    parent: HTMLElement,
+    private readonly inView: InView,
+    scrub: (share: number) => void,
+  ) {
     this.drawn = panels.map((panel) => {
       const axes = svg('g'),
         area = {x: left, y: top, width: width - left - right, height: height - top - bottom},
@@ -128,23 +132,24 @@ export class CyclePlots {
     for (const d of this.drawn) {
       const shown = d.panel.columns.filter(([name]) => columns && finite(columns[name]));
       d.figure.hidden = columns !== null && shown.length === 0;
-      d.cursor.toggleAttribute('hidden', !columns);
-      const next = {panel: d.panel, axes: svg('g'), curves: svg('g')};
-      if (!columns || shown.length === 0) {
-        sayNothing(next.curves, frame, 'no steady cycle');
-        update(d.axes, []);
+      this.inView.draw(d.figure, () => {
+        d.cursor.toggleAttribute('hidden', !columns);
+        const next = {panel: d.panel, axes: svg('g'), curves: svg('g')};
+        if (!columns || shown.length === 0) {
+          sayNothing(next.curves, frame, 'no steady cycle');
+          d.readout.textContent = d.panel.title;
+        } else {
+          const title = d.panel.id === 'force' ? forceName : d.panel.title;
+          const compared = measured ? shown.filter(([name]) => measured.columns[name]) : [];
+          if (measured && residuals && compared.length > 0)
+            this.drawResiduals(next, columns, compared, title, measured);
+          else this.drawPanel(next, columns, ghost, shown, title, measured);
+        }
+        update(d.axes, next.axes.childNodes);
         update(d.curves, next.curves.childNodes);
-        d.readout.textContent = d.panel.title;
-        continue;
-      }
-      const title = d.panel.id === 'force' ? forceName : d.panel.title;
-      const compared = measured ? shown.filter(([name]) => measured.columns[name]) : [];
-      if (measured && residuals && compared.length > 0) this.drawResiduals(next, columns, compared, title, measured);
-      else this.drawPanel(next, columns, ghost, shown, title, measured);
-      update(d.axes, next.axes.childNodes);
-      update(d.curves, next.curves.childNodes);
+        this.showCursorIn(d);
+      });
     }
-    this.showCursor();
   }
 
   private drawPanel(
@@ -172,23 +177,25 @@ export class CyclePlots {
       ...(shown.length > 1 ? [legend(shown)] : []),
       svg('text', {x: width - right, y: height - 2, 'text-anchor': 'end'}, along.name),
     );
+    const numbers = along.numbers();
     shown.forEach(([name], n) => {
-      const path = (from: Columns, axis: Float64Array) =>
-        line<number>(
-          (_, i) => x(axis[i]!),
-          (v) => y(v * scale.factor),
-        )(Array.from(from[name]!)) ?? '';
+      const path = (from: Columns, axis: Float64Array) => {
+        return linesOf(
+          axis.map((t) => x(t)),
+          from[name]!.map((v) => y(v * scale.factor)),
+        );
+      };
       if (ghost && finite(ghost[name])) {
         const axis = this.abscissaOf(ghost);
-        const stretched = axis.numbers.map((t) => (t * along.end) / axis.end);
+        const stretched = axis.numbers().map((t) => (t * along.end) / axis.end);
         d.curves.append(svg('path', {class: `curve ghost series-${n}`, d: path(ghost, stretched)}));
       }
-      d.curves.append(svg('path', {class: `curve series-${n}`, d: path(columns, along.numbers)}));
+      d.curves.append(svg('path', {class: `curve series-${n}`, d: path(columns, numbers)}));
       const marks = measured?.columns[name];
       if (!marks) return;
       let dots = '';
       marks.forEach((v, row) => {
-        const at = atShare(along.numbers, measured.shares[row]!);
+        const at = atShare(numbers, measured.shares[row]!);
         if (Number.isFinite(v) && Number.isFinite(at))
           dots += `M${x(at).toFixed(1)},${y(v * scale.factor).toFixed(1)}h0`;
       });
@@ -216,10 +223,11 @@ export class CyclePlots {
       ...(shown.length > 1 ? [legend(shown)] : []),
       svg('text', {x: width - right, y: height - 2, 'text-anchor': 'end'}, along.name),
     );
+    const numbers = along.numbers();
     shown.forEach((_, n) => {
       let marks = '';
       residuals[n]!.forEach((v, row) => {
-        const at = atShare(along.numbers, measured.shares[row]!);
+        const at = atShare(numbers, measured.shares[row]!);
         if (!Number.isFinite(v) || !Number.isFinite(at)) return;
         marks += `M${x(at).toFixed(1)},${y(0).toFixed(1)}V${y(v * scale.factor).toFixed(1)}`;
       });
@@ -235,7 +243,7 @@ export class CyclePlots {
     const columns = this.columns;
     const row = columns ? Math.round(this.place * (columns.time_s!.length - 1)) : 0;
     const along = columns ? this.abscissaOf(columns) : null;
-    const centre = along ? along.numbers[row]! / along.end : 0.5,
+    const centre = along ? along.at(row) / along.end : 0.5,
       from = Math.min(1 - 1 / factor, Math.max(0, centre - 0.5 / factor));
     this.part = [from, from + 1 / factor];
   }
@@ -255,9 +263,14 @@ export class CyclePlots {
 
   private abscissaOf(columns: Columns) {
     const time = this.abscissa === 'time';
-    const factor = time ? 1e3 : 180 / Math.PI;
-    const numbers = columns[time ? 'time_s' : 'crank_angle_rad']!.map((t) => t * factor);
-    return {numbers, end: time ? numbers[numbers.length - 1]! : 360, name: time ? 'time, ms' : 'crank angle, °'};
+    const factor = time ? 1e3 : 180 / Math.PI,
+      from = columns[time ? 'time_s' : 'crank_angle_rad']!;
+    return {
+      numbers: () => from.map((t) => t * factor),
+      at: (row: number) => from[row]! * factor,
+      end: time ? from[from.length - 1]! * factor : 360,
+      name: time ? 'time, ms' : 'crank angle, °',
+    };
   }
 
   /** The share of the cycle in time at a share of the horizontal axis. */
@@ -282,33 +295,34 @@ export class CyclePlots {
   }
 
   private showCursor() {
+    for (const d of this.drawn) this.inView.show(d.figure, () => this.showCursorIn(d));
+  }
+
+  private showCursorIn(d: Drawn) {
     const columns = this.columns;
-    if (!columns) return;
+    if (!columns || d.figure.hidden) return;
     const row = Math.round((this.reading ?? this.place) * (columns.time_s!.length - 1));
     const along = this.abscissaOf(columns);
-    const x = this.across(along.end)(along.numbers[row]!),
+    const x = this.across(along.end)(along.at(row)),
       inside = x >= left - 0.5 && x <= width - right + 0.5;
-    for (const d of this.drawn) {
-      if (d.figure.hidden) continue;
-      set(d.cursor, {x1: x, x2: x});
-      d.cursor.toggleAttribute('hidden', !inside);
-      if (d.curves.querySelector('.residual')) {
-        d.readout.replaceChildren();
-        continue;
-      }
-      const parts = d.panel.columns
-        .filter(([name]) => finite(columns[name]))
-        .map(([name], n) => {
-          const value = columns[name]![row]!,
-            scale = scaleFor(value, d.panel.unit);
-          return svg(
-            'tspan',
-            {class: `label-${n}`, dx: n ? 6 : 0},
-            `${withMinus(digits(value * scale.factor, 3))} ${shownUnit(scale.unit)}`,
-          );
-        });
-      update(d.readout, parts);
+    set(d.cursor, {x1: x, x2: x});
+    d.cursor.toggleAttribute('hidden', !inside);
+    if (d.curves.querySelector('.residual')) {
+      d.readout.replaceChildren();
+      return;
     }
+    const parts = d.panel.columns
+      .filter(([name]) => finite(columns[name]))
+      .map(([name], n) => {
+        const value = columns[name]![row]!,
+          scale = scaleFor(value, d.panel.unit);
+        return svg(
+          'tspan',
+          {class: `label-${n}`, dx: n ? 6 : 0},
+          `${withMinus(digits(value * scale.factor, 3))} ${shownUnit(scale.unit)}`,
+        );
+      });
+    update(d.readout, parts);
   }
 }
 

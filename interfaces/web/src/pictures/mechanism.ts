@@ -1,6 +1,6 @@
 // The mechanism at one instant of the cycle, to scale but for the wings' length; arrows for what acts.
 import type {Columns, Mechanism} from '../core';
-import {svg, update} from '../dom';
+import {set, svg, update} from '../dom';
 import {atShare} from '../measured';
 import {readable} from '../quantities';
 
@@ -285,7 +285,7 @@ export function drawMechanism(
   ghost: (Drawn & {instant: Instant}) | null,
   rest: Rest | null,
 ) {
-  picture.setAttribute('viewBox', `0 0 ${width} ${height}`);
+  set(picture, {viewBox: `0 0 ${width} ${height}`});
   const parts: SVGElement[] = [];
   if (ghost) {
     const {group} = sketchOf(ghost, ghost.instant, [0, 0], false);

@@ -1,7 +1,7 @@
 // Where the power goes: from the supply through motor and mechanism to the air, mean powers of a cycle.
 import {sankey, sankeyLinkHorizontal} from 'd3-sankey';
 import type {Balance} from '../core';
-import {layerOf, svg, update} from '../dom';
+import {layerOf, set, svg, update} from '../dom';
 import {digits, readable} from '../quantities';
 
 interface Place {
@@ -62,7 +62,7 @@ function network(b: Balance): {nodes: Place[]; links: Flow[]} {
 /** `room` is what the page has for the picture [px]: letters keep their size. Returns the flows. */
 export function drawSankey(picture: SVGSVGElement, balance: Balance | null, room: number): DrawnFlow[] {
   const width = Math.max(330, Math.min(720, room || 640));
-  picture.setAttribute('viewBox', `0 0 ${width} ${height}`);
+  set(picture, {viewBox: `0 0 ${width} ${height}`});
   const means = layerOf(picture, 'flows');
   if (!balance || !(balance.electrical > 0)) {
     const nothing = {x: width / 2, y: height / 2, 'text-anchor': 'middle', class: 'nothing'};
