@@ -83,6 +83,7 @@ async function start() {
   new Studies(explorer);
   new HoverPanel(explorer);
   new FitPanel(explorer);
+  window.addEventListener('beforeprint', () => explorer.inView.flush());
   window.addEventListener('resize', () => explorer.views.resized());
   window.addEventListener('popstate', (event) => {
     const state = explorer.visitedState(event.state);

@@ -244,6 +244,7 @@ export class Views {
   }
   play(on: boolean) {
     this.playback.playing = on;
+    if (!on) this.explorer.inView.flush();
     if (on && !this.hasCycle() && this.playback.share >= 1) this.playback.share = 0;
     const button = byId('play');
     button.textContent = on ? 'pause' : 'play';

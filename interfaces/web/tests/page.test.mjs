@@ -326,6 +326,18 @@ test('while a slider moves: what is out of sight waits, no choice is set anew; a
   await context.close();
 });
 
+test('a pause stops all panels at one instant, those out of sight too', async () => {
+  const {page, context} = await open(browser, server.url);
+  await page.waitForTimeout(700);
+  await page.click('#play');
+  const places = await page.evaluate(() =>
+    [...document.querySelectorAll('#plots .plot:not([hidden]) .cursor')].map((line) => line.getAttribute('x1')),
+  );
+  assert.equal(places.length, 6);
+  assert.equal(new Set(places).size, 1, places.join());
+  await context.close();
+});
+
 test('pictures in 3D are drawn in a worker, not by the page', async () => {
   const {page, context, problems} = await open(browser, server.url);
   await page.click('#fly');
