@@ -37,7 +37,7 @@ export type Work = 'solving' | 'solved' | 'failed';
 
 const solveDeadline = 20_000,
   derivativeDeadline = 30_000,
-  rows = {resting: 361, moving: 181}, // of a cycle
+  rows = {resting: 361, moving: 121}, // of a cycle
   kept = 24, // designs
   longest = 500; // entries of the browser's history
 /** Entries of the browser's history outlive the page; those of another page's are not taken for this one's. */
