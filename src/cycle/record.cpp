@@ -73,8 +73,8 @@ WaveformRow CycleRecord::at(double theta) const {
 
 namespace {
 
-/// Moves a place on a crank's cycle by a time over which a step of fourth order has no error, by an angle exact to
-/// second order. False, nothing changed, where a state follows so quickly that it has.
+/// Moves a place on a crank's cycle by a short `time`, in which the crank turns by the angle `by`, with one step of
+/// fourth order. False, nothing changed, where a rate changes so much meanwhile that the step would have an error.
 template <class System>
 bool move_by_time(const System& system, const typename System::Signs& signs, const solver::Rates<System>& rates,
                   double time, double by, Place<System>& place) {
@@ -90,17 +90,17 @@ bool move_by_time(const System& system, const typename System::Signs& signs, con
   return true;
 }
 
-/// The place at a time since the cycle's start in step n, which begins at `start_time`: by Newton's method from `near`,
-/// a place in the step.
+/// The place at a time since the cycle's start in step n, which begins at `start_time`. From `near`, a place in the
+/// step, by the angle of a crank in the time t left, to second order:
+/// omega t + omega omega' t^2 / 2 = omega t (1 + (d omega / d theta) t / 2).
 template <class Recorded, class System = decltype(Recorded::system)>
 Place<System> place_at_time(const Recorded& recorded, std::size_t n, double start_time, double time, double period,
                             const Place<System>& near) {
   const System& system = recorded.system;
   const auto& step = recorded.cycle.steps[n];
   Place<System> place = near;
-  for (int iteration = 0; iteration < 20; ++iteration) {
+  for (int iteration = 0; iteration < 20 && std::abs(time - place.time) > 1e-14 * period; ++iteration) {
     const double left = time - place.time;
-    if (std::abs(left) <= 1e-14 * period && iteration > 0) break;
     double by = system.phase_rate(place.y) * left;
     if constexpr (System::turns) {
       const auto rates =

@@ -164,7 +164,7 @@ class PeriodicSearch {
         steps_(steps),
         tolerance_(tolerance),
         z_(map_.start(steady)) {
-    fine_.start(steady);
+    fine_.start(steady);  // sets the crank angle that its cycles start at
   }
 
   void command(const FlightControls& controls) {

@@ -75,22 +75,22 @@ export class Controls {
     private readonly events: Events,
   ) {}
 
-  /** Builds the controls anew where keys come or go, else moves them. `base` are the values of the file itself. */
-  show(stated: Stated, values: Values, base: Values) {
-    if (!this.fit(stated, values)) {
-      const keys = this.shownKeys(values);
-      const focused = this.parent.contains(document.activeElement) ? document.activeElement?.id : '';
-      this.build(keys, values, base);
-      this.layout = layoutOf(keys, values);
-      this.text = stated.text;
-      if (focused) document.getElementById(focused)?.focus();
-    }
-    for (const row of this.rows) this.move(row, values[row.key.key], row.key.key in stated.changes);
+  /** Moves the controls. False where keys come or go, so that they have to be built anew. */
+  move(stated: Stated, values: Values): boolean {
+    if (stated.text !== this.text || layoutOf(this.shownKeys(values), values) !== this.layout) return false;
+    for (const row of this.rows) this.moveRow(row, values[row.key.key], row.key.key in stated.changes);
+    return true;
   }
 
-  /** Whether the controls are those of the keys, so that they need only be moved. */
-  fit(stated: Stated, values: Values): boolean {
-    return stated.text === this.text && layoutOf(this.shownKeys(values), values) === this.layout;
+  /** Builds the controls anew. `base` are the values of the file itself. */
+  build(stated: Stated, values: Values, base: Values) {
+    const keys = this.shownKeys(values);
+    const focused = this.parent.contains(document.activeElement) ? document.activeElement?.id : '';
+    this.buildRows(keys, values, base);
+    this.layout = layoutOf(keys, values);
+    this.text = stated.text;
+    if (focused) document.getElementById(focused)?.focus();
+    this.move(stated, values);
   }
 
   private shownKeys(values: Values): Key[] {
@@ -154,7 +154,7 @@ export class Controls {
     for (const row of this.rows) this.accept(row.key.key);
   }
 
-  private build(keys: Key[], values: Values, base: Values) {
+  private buildRows(keys: Key[], values: Values, base: Values) {
     const open = new Set(
       Array.from(this.parent.querySelectorAll('details[open]'), (d) => (d as HTMLElement).dataset.section),
     );
@@ -276,7 +276,7 @@ export class Controls {
     return element;
   }
 
-  private move(row: Row, value: Values[string] | undefined, changed: boolean) {
+  private moveRow(row: Row, value: Values[string] | undefined, changed: boolean) {
     const text =
       typeof value === 'number'
         ? readable(value, row.key.unit ?? '', 5)

@@ -139,9 +139,13 @@ export class Explorer {
 
   /** Controls of other keys are built in a task of their own, for they take as long as the rest of a change. */
   private showControls() {
-    const show = () => this.controls.show(this.state.design, this.values, this.base);
-    if (this.controls.fit(this.state.design, this.values)) return show();
-    this.built = new Promise((done) => setTimeout(() => done(show())));
+    if (this.controls.move(this.state.design, this.values)) return;
+    this.built = new Promise((done) =>
+      setTimeout(() => {
+        this.controls.build(this.state.design, this.values, this.base);
+        done();
+      }),
+    );
   }
 
   /** The values of a vehicle file itself. */
@@ -238,17 +242,17 @@ export class Explorer {
     const {state} = this;
     const options = runOptions(state);
     const wanted = [state.design, ...state.pins];
-    const fine = this.moving ? rows.moving : rows.resting;
-    const missing = wanted.filter((design) => !((this.cache.get(identityOf(design, options))?.rows ?? 0) >= fine));
+    const count = this.moving ? rows.moving : rows.resting;
+    const missing = wanted.filter((design) => !((this.cache.get(identityOf(design, options))?.rows ?? 0) >= count));
     this.work = 'solving';
     this.asked = performance.now();
     clearTimeout(this.settle);
     this.notify();
     if (missing.length) {
       const stated = missing.map(({text, changes}) => ({text, changes}));
-      const outcome = await this.solver.ask('designs', {designs: stated, options, rows: fine});
+      const outcome = await this.solver.ask('designs', {designs: stated, options, rows: count});
       if (outcome.kind !== 'done') return this.unsolved(state, outcome, origin);
-      missing.forEach((design, n) => this.keep(design, options, {computed: outcome.answer[n]!, rows: fine}));
+      missing.forEach((design, n) => this.keep(design, options, {computed: outcome.answer[n]!, rows: count}));
     }
     await this.built;
     const [current, ...pins] = wanted.map((design) => this.cache.get(identityOf(design, options))?.computed);
@@ -278,6 +282,8 @@ export class Explorer {
     } else {
       this.work = 'failed';
       this.failure = outcome.why;
+      this.moving = false;
+      this.inView.flush();
       this.notify();
       this.rest();
     }

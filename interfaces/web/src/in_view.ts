@@ -10,7 +10,7 @@ export class InView {
   constructor(private readonly waits: () => boolean) {}
 
   /** True as well of an element of which nothing is known yet. */
-  has(element: Element): boolean {
+  private has(element: Element): boolean {
     if (!this.watched.has(element)) {
       this.watched.add(element);
       this.observer.observe(element);
@@ -28,7 +28,7 @@ export class InView {
     }
   }
 
-  /** As draw() of what changes often, and is drawn with the element as well. */
+  /** Shows what follows each instant and is a part of what draw() draws: now if in sight, else as what waits. */
   show(element: Element, show: () => void) {
     if (this.has(element)) show();
     else if (!this.late.has(element)) this.late.set(element, show);

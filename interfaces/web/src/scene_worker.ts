@@ -3,14 +3,15 @@ import {WebGLRenderer} from 'three';
 import type {FlightBegun} from './answers';
 import {FlightScene, type Look, type Pose} from './flight_scene';
 import {type FreeColours, type FreeLook, FreeScene} from './free_scene';
+import type {Size} from './stage';
 
 /** `id`: of the picture, which counts up from 1. */
 export type Order = {id: number} & (
   | {kind: 'flight'; look: Look}
   | {kind: 'free'; begun: FlightBegun; colours: FreeColours}
   | {kind: 'show'; shown: Pose | FreeLook}
-  | {kind: 'extend'; places: number[][]}
-  | {kind: 'resize'; size: {width: number; height: number; ratio: number}}
+  | {kind: 'extend'; places: readonly number[][]}
+  | {kind: 'resize'; size: Size}
   | {kind: 'dispose'}
 );
 type Scene = FlightScene | FreeScene;
@@ -29,7 +30,7 @@ function replace(make: ((renderer: WebGLRenderer) => Scene) | null) {
 function draw() {
   const shown = waiting;
   waiting = null;
-  if (shown) scene?.show(shown as Pose & FreeLook);
+  if (shown) scene?.show(shown as Pose & FreeLook); // a picture sends what its scene shows
 }
 
 function obey(order: Order) {

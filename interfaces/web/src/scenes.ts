@@ -11,8 +11,8 @@ export {default as FlightWorker} from './flight_worker?worker&inline';
 /** A picture in the worker. What is asked of one after another has taken its place has no effect. */
 class Picture<Shown extends Pose | FreeLook> {
   constructor(
-    private readonly send: (order: Order) => void,
-    private readonly id: number,
+    protected readonly send: (order: Order) => void,
+    protected readonly id: number,
   ) {}
   show(shown: Shown) {
     this.send({id: this.id, kind: 'show', shown});
@@ -27,15 +27,9 @@ class Picture<Shown extends Pose | FreeLook> {
 export type FlightPicture = Picture<Pose>;
 
 export class FreePicture extends Picture<FreeLook> {
-  constructor(
-    private readonly order: (order: Order) => void,
-    private readonly of: number,
-  ) {
-    super(order, of);
-  }
   /** Further points of the path [m]: north, east, height. */
   extend(places: readonly number[][]) {
-    this.order({id: this.of, kind: 'extend', places: [...places]});
+    this.send({id: this.id, kind: 'extend', places});
   }
 }
 

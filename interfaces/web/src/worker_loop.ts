@@ -31,6 +31,7 @@ export function serve<Library, Request extends {id: number}>(
     let reply: Reply;
     try {
       const started = await library!;
+      // Once: what precedes it is the start of the worker, which a deadline does not count.
       if (!begun) self.postMessage({id, begun: true} satisfies Reply);
       begun = true;
       reply = {id, answer: answer(started, event.data)};

@@ -81,27 +81,23 @@ const close = 0.1;
 
 /** Lines through points, x ascending, as a path: of those that a line passes closely by only the ends. */
 export function linesOf(x: Float64Array, y: Float64Array): string {
-  let path = '',
-    start = -1, // of the present line
+  if (x.length === 0) return '';
+  const point = (n: number) => `${Math.round(100 * x[n]!) / 100},${Math.round(100 * y[n]!) / 100}`;
+  let path = `M${point(0)}`,
+    start = 0, // of the present line
     least = -Infinity, // of its slope, so that it passes closely by all points so far
     largest = Infinity;
-  const go = (n: number) => {
-    path += `${start < 0 ? 'M' : 'L'}${Math.round(100 * x[n]!) / 100},${Math.round(100 * y[n]!) / 100}`;
-    start = n;
-    least = -Infinity;
-    largest = Infinity;
-  };
-  for (let n = 0; n < x.length; ++n) {
-    if (start < 0) {
-      go(n);
-      continue;
+  /** Of a line from the start to a place `off` from point n. */
+  const slope = (n: number, off = 0) => (y[n]! + off - y[start]!) / (x[n]! - x[start]!);
+  for (let n = 1; n < x.length; ++n) {
+    if (!(slope(n) >= least && slope(n) <= largest)) {
+      path += `L${point(n - 1)}`;
+      start = n - 1;
+      least = -Infinity;
+      largest = Infinity;
     }
-    const along = () => x[n]! - x[start]!;
-    const slope = (off: number) => (y[n]! + off - y[start]!) / along();
-    if (!(slope(0) >= least && slope(0) <= largest)) go(n - 1);
-    least = Math.max(least, slope(-close));
-    largest = Math.min(largest, slope(close));
+    least = Math.max(least, slope(n, -close));
+    largest = Math.min(largest, slope(n, close));
   }
-  if (start >= 0 && start < x.length - 1) go(x.length - 1);
-  return path;
+  return start < x.length - 1 ? `${path}L${point(x.length - 1)}` : path;
 }

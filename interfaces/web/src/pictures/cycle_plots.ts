@@ -179,12 +179,11 @@ export class CyclePlots {
     );
     const numbers = along.numbers();
     shown.forEach(([name], n) => {
-      const path = (from: Columns, axis: Float64Array) => {
-        return linesOf(
+      const path = (from: Columns, axis: Float64Array) =>
+        linesOf(
           axis.map((t) => x(t)),
           from[name]!.map((v) => y(v * scale.factor)),
         );
-      };
       if (ghost && finite(ghost[name])) {
         const axis = this.abscissaOf(ghost);
         const stretched = axis.numbers().map((t) => (t * along.end) / axis.end);
