@@ -19,7 +19,7 @@ MANUAL = pathlib.Path(os.environ["WINGBEAT_MANUAL"])
 
 
 def output_of(*command, **options):
-    done = subprocess.run(command, capture_output=True, text=True, timeout=60, **options)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=250, **options)
     if done.returncode != 0:
         raise AssertionError(f"{command}: exit status {done.returncode}\n{done.stdout}{done.stderr}")
     return done.stdout
@@ -57,7 +57,7 @@ class ManPages(unittest.TestCase):
         environment = {**os.environ, "MANWIDTH": "400", "LC_ALL": "C.UTF-8"}
         file = MANUAL / "man" / f"{name}.1"
         done = subprocess.run(["man", "--warnings", "--nh", "--nj", "-l", file], capture_output=True, text=True,
-                              env=environment, timeout=60)
+                              env=environment, timeout=250)
         self.assertEqual((done.returncode, done.stderr), (0, ""), name)
         return done.stdout
 

@@ -131,7 +131,7 @@ class Interrupts(unittest.TestCase):
 class Processes(unittest.TestCase):
     def run_script(self, text):
         head = "from shared import *\nimport numpy as np, threading, time\n"
-        return subprocess.run([sys.executable, "-c", head + text], capture_output=True, text=True, timeout=60)
+        return subprocess.run([sys.executable, "-c", head + text], capture_output=True, text=True, timeout=250)
 
     def test_a_daemon_thread_does_not_outlive_python(self):
         for act in (

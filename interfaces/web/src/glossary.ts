@@ -112,14 +112,15 @@ export class Glossary {
     return name ? (this.terms.find((term) => term.name === name) ?? null) : null;
   }
 
-  private last = 0;
+  /** The field that a label just tapped hands the click on to. */
+  private handedOn: Element | null = null;
 
   private tapped(event: MouseEvent) {
     const {meaning} = this,
       target = event.target as Element;
-    // A label that is tapped hands the click on to its field.
-    if (event.timeStamp - this.last < 100) return;
-    this.last = target.closest('label') ? event.timeStamp : 0;
+    const isHandedOn = target === this.handedOn;
+    this.handedOn = target.closest('label')?.control ?? null;
+    if (isHandedOn) return;
     if (target.closest('dialog, button, input, select, textarea, svg')) {
       meaning.hidden = true;
       return;

@@ -33,8 +33,12 @@ export async function serve() {
 
 export const singleFile = `file://${join(built, 'wingbeat-explorer.html')}`;
 
+/** How long any wait may take, in ms: a machine may stand still for a minute, and that alone fails no test. */
+export const patience = 600_000;
+
 export async function launch() {
-  return chromium.launch({executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium', args: ['--no-sandbox']});
+  const executablePath = process.env.CHROMIUM ?? '/usr/bin/chromium';
+  return chromium.launch({executablePath, args: ['--no-sandbox'], timeout: patience});
 }
 
 /** A page at `url`, started; `problems` gathers what the console reports and what asked for the network. */
@@ -47,6 +51,7 @@ export async function open(browser, url, options = {}) {
     problems.push(`asked for ${route.request().url()}`);
     return route.abort();
   });
+  context.setDefaultTimeout(patience);
   const page = await context.newPage();
   page.on('console', (message) => {
     // Screenshots of WebGL are read back, of which its driver without a graphics card warns.
@@ -55,7 +60,7 @@ export async function open(browser, url, options = {}) {
   });
   page.on('pageerror', (error) => problems.push(String(error)));
   await page.goto(url);
-  await page.waitForSelector('body[data-ready]', {timeout: 60_000}).catch(async (error) => {
+  await page.waitForSelector('body[data-ready]').catch(async (error) => {
     throw new Error(`${error.message}\n${problems.join('\n')}\n${await page.textContent('#message')}`);
   });
   return {page, context, problems};

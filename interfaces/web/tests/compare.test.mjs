@@ -36,7 +36,7 @@ test('make it hover: one press gives a design that the program confirms, and und
   const before = await report(page);
   assert.ok(before.lift_to_weight < 0.5);
   await page.click('#hover');
-  await page.waitForSelector('body[data-hover]', {timeout: 120_000});
+  await page.waitForSelector('body[data-hover]');
   await idle(page);
   const found = await report(page);
   assert.equal(await page.getAttribute('body', 'data-hover'), 'reached');
@@ -74,7 +74,7 @@ test('make it hover: limits are kept, what is out of reach is said, wrong limits
   await limit.fill('3200 mV');
   await page.getByRole('button', {name: 'remove transmission.crank_radius'}).click();
   await page.click('#hover');
-  await page.waitForSelector('body[data-hover]', {timeout: 120_000});
+  await page.waitForSelector('body[data-hover]');
   assert.match(await page.textContent('#hover-note'), /No design within these limits reaches 1\./);
   assert.ok(Math.abs((await report(page)).voltage_v - 3.2) < 1e-3);
   await done();

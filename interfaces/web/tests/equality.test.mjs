@@ -96,7 +96,7 @@ function compare({report: ours, resistance}, {report: theirs}, what, which = () 
   return largest;
 }
 
-test('random designs: statuses are equal, metrics to 1e-12', {timeout: 900_000}, async () => {
+test('random designs: statuses are equal, metrics to 1e-12', async () => {
   const values = await page.evaluate(() => {
     const {core} = window.explorer,
       {shipped} = window;

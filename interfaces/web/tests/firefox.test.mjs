@@ -3,7 +3,7 @@ import assert from 'node:assert/strict';
 import {existsSync} from 'node:fs';
 import {after, before, test} from 'node:test';
 import {firefox} from 'playwright-core';
-import {serve, singleFile} from './browser.mjs';
+import {patience, serve, singleFile} from './browser.mjs';
 import {answer} from './program.mjs';
 
 const executablePath = process.env.FIREFOX ?? '/usr/bin/firefox-esr';
@@ -12,7 +12,7 @@ let server, browser;
 before(async () => {
   if (skip) return;
   server = await serve();
-  browser = await firefox.launch({channel: 'moz-firefox', executablePath});
+  browser = await firefox.launch({channel: 'moz-firefox', executablePath, timeout: patience});
 });
 after(async () => {
   await browser?.close();
@@ -25,8 +25,9 @@ for (const [name, url] of [
 ]) {
   test(`Firefox, ${name}: numbers, slider, undo, map, hovering, flight`, {skip}, async () => {
     const page = await browser.newPage({viewport: {width: 1440, height: 900}});
+    page.setDefaultTimeout(patience);
     await page.goto(url());
-    await page.waitForSelector('body[data-ready]', {timeout: 60_000});
+    await page.waitForSelector('body[data-ready]');
     const report = () => page.evaluate(() => window.explorer.idle().then(() => window.explorer.shown.solved.report));
     const {report: theirs} = await answer('friction2022', {}, 'air');
     const first = await report();
@@ -40,9 +41,9 @@ for (const [name, url] of [
     await page.click('#undo');
     assert.deepEqual(await report(), first);
     await page.click('#study');
-    await page.waitForSelector('body[data-study^="200 "]', {timeout: 60_000});
+    await page.waitForSelector('body[data-study^="200 "]');
     await page.click('#hover');
-    await page.waitForSelector('body[data-hover="reached"]', {timeout: 120_000});
+    await page.waitForSelector('body[data-hover="reached"]');
     assert.ok((await report()).lift_to_weight >= 0.9999);
     await page.click('#fly');
     await page.waitForFunction(() =>

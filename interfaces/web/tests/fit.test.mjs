@@ -28,7 +28,7 @@ async function bench(changes, noise = 0) {
 const fitted = async () => {
   await page.evaluate(() => delete document.body.dataset.fit);
   await page.click('#fit');
-  await page.waitForSelector('body[data-fit]', {timeout: 120_000});
+  await page.waitForSelector('body[data-fit]');
   await idle(page);
 };
 const value = (key) => page.evaluate((k) => window.explorer.values[k], key);

@@ -14,7 +14,6 @@ const says = (pattern, p = page) =>
   p.waitForFunction(
     ([source]) => new RegExp(source).test(document.querySelector('#pilot-note').textContent),
     [pattern.source],
-    {timeout: 60_000},
   );
 async function start(vehicle = flying, p = page) {
   await choose(p, '#vehicle', vehicle);
@@ -155,7 +154,7 @@ test('the flight plays in the slow motion chosen; set-points, wind and push act 
   await page.focus('#flight-play');
   await page.keyboard.press('Enter');
   await page.selectOption('#flight-rate', {label: '1 / 5'});
-  await page.waitForFunction(() => window.flight.free.time > 0.1, null, {timeout: 60_000});
+  await page.waitForFunction(() => window.flight.free.time > 0.1);
   assert.ok((await number('electrical power')) > 1);
   await page.focus('#flight-east');
   for (let n = 0; n < 4; ++n) await page.keyboard.press('ArrowRight');
@@ -167,12 +166,12 @@ test('the flight plays in the slow motion chosen; set-points, wind and push act 
     const {track, time: now} = window.flight.free;
     return Math.abs(track.at(now).east_m - east) < 0.15 * east;
   },
-    asked, {timeout: 120_000}); // prettier-ignore
+    asked); // prettier-ignore
   await page.focus('#flight-push');
   await page.keyboard.press('Enter');
   await says(/Pushed after/);
   const before = await time();
-  await page.waitForFunction((t) => window.flight.free.time > t + 0.15, before, {timeout: 60_000});
+  await page.waitForFunction((t) => window.flight.free.time > t + 0.15, before);
   await page.click('#flight-play');
   const paused = await time();
   await page.waitForTimeout(300);

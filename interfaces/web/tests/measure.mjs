@@ -95,7 +95,7 @@ await choose(page, '#vehicle', 'friction2022');
 await compute(page);
 await compute(page, {up: 'transmission.crank_radius'});
 await page.click('#hover');
-await page.waitForSelector('body[data-hover]', {timeout: 120_000});
+await page.waitForSelector('body[data-hover]');
 await page.click('#glossary');
 await page.keyboard.press('Escape');
 await page.click('#share');
@@ -149,7 +149,7 @@ await page.waitForSelector('body[data-study^="200 "]');
 console.log(`trend of 200 designs: ${(await page.evaluate(() => document.body.dataset.study)).split(' ')[1]} ms`);
 await page.selectOption('#up', 'transmission.crank_radius');
 await page.click('#study');
-await page.waitForSelector('body[data-study^="1600 "]', {timeout: 120000});
+await page.waitForSelector('body[data-study^="1600 "]');
 console.log(`map of 1600 designs: ${(await page.evaluate(() => document.body.dataset.study)).split(' ')[1]} ms`);
 
 const begun = [];

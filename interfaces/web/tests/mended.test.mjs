@@ -84,7 +84,7 @@ test('1: a vehicle changed while a map is computed does not change whose map it 
   await page.selectOption('#up', 'transmission.crank_radius');
   await page.click('#study');
   await choose(page, '#vehicle', 'friction2022-springs');
-  await page.waitForSelector('body[data-study^="1600 "]', {timeout: 60_000});
+  await page.waitForSelector('body[data-study^="1600 "]');
   assert.match(await text('#study-picture'), /friction2022/);
   assert.doesNotMatch(await text('#study-picture'), /springs/);
   assert.match(await text('#study-stale'), /Computed for friction2022,/);

@@ -36,7 +36,7 @@ export async function compute(page, {across = 'supply.voltage', up = ''} = {}) {
   await page.selectOption('#across', across);
   await page.selectOption('#up', up);
   await page.click('#study');
-  await page.waitForSelector('body[data-study]', {timeout: 60_000});
+  await page.waitForSelector('body[data-study]');
 }
 
 /** A file of the name with the text, in a folder of its own. */

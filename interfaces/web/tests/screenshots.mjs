@@ -47,7 +47,7 @@ const states = {
     await page.locator('#flight-play').scrollIntoViewIfNeeded();
     await page.click('#flight-push');
     await page.click('#flight-play');
-    await page.waitForFunction(() => window.flight.free.time > 0.4, null, {timeout: 60_000});
+    await page.waitForFunction(() => window.flight.free.time > 0.4);
     await page.click('#flight-play');
   },
   fit: async (page) => {
@@ -59,12 +59,12 @@ const states = {
     });
     await page.check('#residuals');
     await page.click('#fit');
-    await page.waitForSelector('body[data-fit]', {timeout: 120_000});
+    await page.waitForSelector('body[data-fit]');
     await idle(page);
   },
   hover: async (page) => {
     await page.click('#hover');
-    await page.waitForSelector('body[data-hover]', {timeout: 120_000});
+    await page.waitForSelector('body[data-hover]');
     await idle(page);
     await at(page, 0.3);
   },

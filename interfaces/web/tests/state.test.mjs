@@ -168,7 +168,7 @@ test('a map can be stopped, and the page answers while one is computed', async (
   await done();
 });
 
-test('every vehicle and random edits give the numbers of the program', {timeout: 900_000}, async () => {
+test('every vehicle and random edits give the numbers of the program', async () => {
   const values = await page.evaluate(() =>
     Object.fromEntries(
       Object.entries(window.shipped).map(([name, text]) => [name, window.explorer.core.values({text, changes: {}})]),
@@ -270,7 +270,7 @@ test('the mechanism moves on while a slider moves and while a design takes long'
 test('the endurance, which takes longer than the cycle, comes into the table of metrics', async () => {
   await choose(page, '#vehicle', 'friction2022-battery');
   const row = page.locator('#metrics tr:has([title="endurance_s"]) td');
-  await row.waitFor({state: 'attached', timeout: 60_000});
+  await row.waitFor({state: 'attached'});
   const {endurance_s} = await report(page);
   assert.ok(endurance_s > 0);
   assert.match(await row.textContent(), /(s|min|h)$/);

@@ -230,9 +230,7 @@ for (const [name, url] of [
       0,
     );
     await p.click('#fly');
-    await p.waitForFunction(() => /It falls/.test(document.querySelector('#flight-note').textContent), null, {
-      timeout: 20000,
-    });
+    await p.waitForFunction(() => /It falls/.test(document.querySelector('#flight-note').textContent));
     if (name === 'hosted')
       assert.ok(
         asked.some((a) => /scenes.*\.js$/.test(a)),
