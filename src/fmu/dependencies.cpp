@@ -175,8 +175,10 @@ std::vector<std::size_t> known_of_body(const Design<double>& design, VariableKin
     return found;
   }
   if (index >= first_body_load) return known_of_loads(design);
-  if (index < 3) return states(first_position + index, first_position + index + 1);
-  if (index < 13) return states(index - 3, index - 2);
+  // Outputs are the position, the other states in their order, the angles of the attitude, and the loads.
+  constexpr std::size_t positions = 3, numbers = positions + first_position;
+  if (index < positions) return states(first_position + index, first_position + index + 1);
+  if (index < numbers) return states(index - positions, index - positions + 1);
   return states(attitude, first_position);
 }
 

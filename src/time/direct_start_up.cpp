@@ -45,6 +45,17 @@ void DirectStartUp::settle(double closure, double change) {
   if (pitches(model_.vehicle)) pitching_.add_to(result_.evidence, model_);
 }
 
+/// True where periods come no nearer to each other. Whatever settles within `max_cycles` more than halves its changes
+/// over the periods watched.
+bool DirectStartUp::never_repeats() const {
+  constexpr std::ptrdiff_t watched = 250;
+  constexpr double far = 1e-2;
+  const auto end = changes_.end();
+  if (changes_.size() < 4 * watched || changes_.size() % watched != 0) return false;
+  const double least = *std::min_element(end - watched, end);
+  return least > far && least > 0.5 * *std::min_element(end - 2 * watched, end - watched);
+}
+
 void DirectStartUp::period_done() {
   ++result_.cycles;
   event(Kind::revolution);
@@ -103,8 +114,8 @@ void DirectStartUp::period_done() {
     relative_tolerance_ = std::min(relative_tolerance_, std::max(tightest_, left * (1.0 - rate)));
   }
   if (close || change < noise || model_.measuring) begin_measuring();
-  if (result_.cycles >= options_.max_cycles) {
-    give_up({.kind = Evidence::cycles_differ, .change = change, .cycles = options_.max_cycles});
+  if (result_.cycles >= options_.max_cycles || never_repeats()) {
+    give_up({.kind = Evidence::cycles_differ, .change = change, .cycles = result_.cycles});
   }
 }
 

@@ -27,6 +27,7 @@ class DirectStartUp : public StartUpRun {
   bool wings_are_still() const;
   bool rests_for_good();
   bool creeps_to_rest();
+  bool never_repeats() const;
 
   const double period_ = 1.0 / model_.vehicle.drive_frequency;
   double last_off_ = infinity;    ///< how far the last period was from the orbit, relative

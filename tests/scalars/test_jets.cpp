@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <random>
+#include <vector>
 
 #include "scalars/kernel.hpp"
 #include "scalars/vehicle_parameters.hpp"
@@ -347,6 +348,47 @@ TEST(Jets, TableIsDifferentiableAtItsPointsAndFlatBeyondThem) {
   }
   EXPECT_EQ(lift_coefficient(c, J(-0.2, 0)).v[0], 0.0);
   EXPECT_EQ(drag_coefficient(c, J(2.0, 0)).v[0], 0.0);
+}
+
+/// All operators of two numbers and of one, each used with either operand in either place.
+template <class J>
+std::vector<J> combined(const J& x, const J& y) {
+  using T = decltype(x.a);
+  const T s(1.7);
+  return {x + y, x - y, -x, x * y, x / y, x * s, s * x, x / s, s / x, (x + s) * (s - y) / (x * y - s)};
+}
+
+/// The numbers 1, 2, ... of partials, scattered over magnitudes and signs.
+template <int N>
+void expect_those_of_ceres() {
+  using Wide = ceres::Jet<long double, N>;  // the operators of Ceres
+  std::mt19937_64 random(N);
+  std::normal_distribution<double> normal;
+  for (int n = 0; n < 100; ++n) {
+    Jet<N> x, y;
+    for (Jet<N>* const jet : {&x, &y}) {
+      jet->a = normal(random);
+      for (int k = 0; k < N; ++k) jet->v[k] = std::exp(3.0 * normal(random)) * normal(random);
+    }
+    const auto wide = [](const Jet<N>& jet) { return Wide(jet.a, jet.v.template cast<long double>()); };
+    const std::vector<Jet<N>> ours = combined(x, y);
+    const std::vector<Wide> theirs = combined(wide(x), wide(y));
+    for (std::size_t k = 0; k < ours.size(); ++k) {
+      const double size = double(theirs[k].v.cwiseAbs().maxCoeff()) * (1.0 + std::abs(1.0 / y.a));
+      EXPECT_NEAR(ours[k].a, double(theirs[k].a), 1e-13 * (1.0 + std::abs(double(theirs[k].a)))) << N << ", " << k;
+      for (int p = 0; p < N; ++p) {
+        EXPECT_NEAR(ours[k].v[p], double(theirs[k].v[p]), 1e-12 * size) << N << ", " << k << ", partial " << p;
+      }
+    }
+  }
+}
+
+TEST(Jets, ArithmeticIsThatOfCeres) {
+  expect_those_of_ceres<1>();
+  expect_those_of_ceres<2>();
+  expect_those_of_ceres<5>();
+  expect_those_of_ceres<8>();
+  expect_those_of_ceres<11>();
 }
 
 TEST(Jets, SelectAndSignCarryTheRightBranch) {

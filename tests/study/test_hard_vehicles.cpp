@@ -70,5 +70,16 @@ TEST(HardVehicles, OfTwoOrbitsItIsTheOneReachedFromRest) {
   EXPECT_NEAR(found.metrics[Metric::frequency], 26.696, 0.001);
 }
 
+// At a third more than its voltage the wing turns over: no period repeats the one before, however many are waited for.
+TEST(HardVehicles, MotionThatDoesNotRepeatIsGivenUpEarly) {
+  Design<double> design = read_design(std::string(WINGBEAT_DATA) + "/designs/robobee-piezo.toml");
+  design.supply.voltage = 120.0;
+  const TransientResult found = simulate_start_up(resolve(design), {});
+  EXPECT_EQ(found.status, FlappingStatus::undecided);
+  EXPECT_EQ(found.evidence.kind, StatusEvidence::Kind::cycles_differ);
+  EXPECT_EQ(found.evidence.cycles, 1000);
+  EXPECT_GT(found.evidence.change, 0.1);
+}
+
 }  // namespace
 }  // namespace wingbeat

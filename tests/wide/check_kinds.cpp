@@ -299,6 +299,8 @@ int main(int argc, char** argv) {
   for (int b = 0; b < int(further_box_names.size()); ++b) {
     if (arguments.only_box >= 0 && b != arguments.only_box) continue;
     rows.emplace_back(further_box_names[std::size_t(b)], check(FurtherBox(b), arguments));
+    print(rows.back().first, rows.back().second);  // kept where a run of hours is ended
+    std::fflush(stdout);
   }
   std::printf("%-16s %5s | %5s %5s %5s %5s |", "", "", "flap", "stall", "lock", "jam");
   for (const char* name : solver_names) std::printf(" %-48s |", name);

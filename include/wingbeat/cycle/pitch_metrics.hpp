@@ -81,6 +81,96 @@ double pitch_at_start(const solver::Iterate<System>& cycle, std::size_t n) {
   return System::local_pitch(step.y);
 }
 
+/// The polynomial of degree 5 through values and slopes at the ends and in the middle of a piece, at gauss_nodes.
+struct NodeWeights {
+  std::array<std::array<double, 3>, gauss_nodes.size()> value, slope;  ///< slopes are those over the piece's length
+};
+constexpr NodeWeights node_weights() {
+  NodeWeights w{};
+  for (std::size_t k = 0; k < gauss_nodes.size(); ++k) {
+    const double u = 0.5 * (1.0 + gauss_nodes[k]);
+    const double lagrange[] = {2.0 * (u - 0.5) * (u - 1.0), -4.0 * u * (u - 1.0), 2.0 * u * (u - 0.5)};
+    constexpr double place[] = {0.0, 0.5, 1.0}, lagrange_slope[] = {-3.0, 0.0, 3.0};
+    for (std::size_t n = 0; n < 3; ++n) {
+      const double square = lagrange[n] * lagrange[n], from = u - place[n];
+      w.value[k][n] = (1.0 - 2.0 * lagrange_slope[n] * from) * square;
+      w.slope[k][n] = from * square;
+    }
+  }
+  return w;
+}
+
+/// A number with its slope by the independent variable.
+struct Sloped {
+  double value, slope;
+};
+struct PitchPoint {
+  Sloped time;  ///< since the step's start [s]
+  Sloped pace;  ///< slope of the time
+  Sloped pitch, stroke;
+};
+template <class System>
+PitchPoint pitch_point(const System& system, double x, double time, const typename System::State& y,
+                       const typename System::State& dy) {
+  const double pace = 1.0 / system.phase_rate(y);
+  PitchPoint p{{time, pace}, {pace, 0.0}, {System::local_pitch(y), System::local_pitch(dy)}, {}};
+  if constexpr (System::turns) p.pace.slope = -dy[System::shaft] * pace * pace;
+  else p.stroke = {system.stroke_angle(x, y), dy[0]};
+  return p;
+}
+
+/// Calls use(weight [s], time since the cycle's start [s], pitch, stroke angle, signs) at the nodes of Gauss's rule
+/// over a cycle, between which and the steps' ends the solution is interpolated: its own values there would each take a
+/// step.
+template <class System, class Use>
+void for_pitch_nodes(const System& system, const solver::Iterate<System>& cycle, const Use& use) {
+  static constexpr NodeWeights weights = node_weights();
+  constexpr double longest = two_pi / 24.0;  // of a piece of steps that stiff vehicles take
+  double start = 0.0;
+  for (std::size_t n = 0; n < cycle.steps.size(); ++n) {
+    const auto& step = cycle.steps[n];
+    const bool last = n + 1 == cycle.steps.size();
+    const auto point = [&](double part) {
+      const double x = step.x + part * step.h;
+      double time = step.dq[std::size_t(Integral::time)];
+      auto y = last ? cycle.end : cycle.steps[n + 1].y;
+      // The next step begins elsewhere where the state jumps between them.
+      const bool moved = solver::state_jumps<System>() && !last && cycle.steps[n + 1].signs != step.signs;
+      if (part < 1.0 || moved) {
+        const auto inside = solver::evaluate_inside<System::turns>(system, cycle, step, x);
+        y = inside.y;
+        if constexpr (System::turns) time = inside.dq[std::size_t(Integral::time)];
+      }
+      if constexpr (!System::turns) time = (x - step.x) / system.phase_rate();
+      return pitch_point(system, x, time, y, system.template rates<false>(x, y, step.signs).dy);
+    };
+    const int pieces = 1 + int(step.h / longest);
+    const double length = step.h / pieces;
+    PitchPoint from = pitch_point(system, step.x, 0.0, step.y, step.first.dy);
+    for (int piece = 0; piece < pieces; ++piece) {
+      const PitchPoint points[] = {from, point((piece + 0.5) / pieces), point((piece + 1.0) / pieces)};
+      for (std::size_t k = 0; k < gauss_nodes.size(); ++k) {
+        const auto at_node = [&](Sloped PitchPoint::* number) {
+          double sum = 0.0;
+          for (std::size_t p = 0; p < 3; ++p) {
+            const Sloped& known = points[p].*number;
+            sum += weights.value[k][p] * known.value + weights.slope[k][p] * length * known.slope;
+          }
+          return sum;
+        };
+        const double x = step.x + (piece + 0.5 * (1.0 + gauss_nodes[k])) * length;
+        double stroke;
+        if constexpr (System::turns) stroke = system.stroke_angle(x, step.y);
+        else stroke = at_node(&PitchPoint::stroke);
+        use(0.5 * length * gauss_weights[k] * at_node(&PitchPoint::pace), start + at_node(&PitchPoint::time),
+            at_node(&PitchPoint::pitch), stroke, step.signs);
+      }
+      from = points[2];
+    }
+    start += step.dq[std::size_t(Integral::time)];
+  }
+}
+
 }  // namespace detail
 
 /// Extremes are where the pitch velocity or the stroke velocity changes sign or a stop holds the wings, which is where
@@ -106,25 +196,14 @@ PitchMetrics pitch_metrics(const System& system, const solver::Iterate<System>& 
   m.chordwise /= period;
   m.amplitude = 0.5 * (highest - lowest);
 
-  // Integrals of stroke and pitch times exp(-j w t), by Gauss's rule on each step.
-  constexpr const auto& nodes = detail::gauss_nodes;
-  constexpr const auto& weights = detail::gauss_weights;
+  // Integrals of stroke and pitch times exp(-j w t).
   std::complex<double> stroke = 0.0, pitching = 0.0;
-  double time = 0.0;
-  for (const auto& step : cycle.steps) {
-    for (std::size_t k = 0; k < nodes.size(); ++k) {
-      const double x = step.x + 0.5 * (1.0 + nodes[k]) * step.h;
-      const auto inside = solver::evaluate_inside<true>(system, cycle, step, x);
-      const double t = time + inside.dq[std::size_t(Integral::time)];
-      const double dt = system.template rates<true>(x, inside.y, step.signs).dq[std::size_t(Integral::time)];
-      const auto weighted = std::polar(0.5 * step.h * weights[k] * dt, -two_pi * t / period);
-      if (system.stroke_sign(step.signs) * System::local_pitch(inside.y) > still_pitch)
-        m.over_rotation += std::abs(weighted);
-      stroke += weighted * system.stroke_angle(x, inside.y);
-      pitching += weighted * System::local_pitch(inside.y);
-    }
-    time += step.dq[std::size_t(Integral::time)];
-  }
+  detail::for_pitch_nodes(system, cycle, [&](double weight, double time, double psi, double beta, const auto& signs) {
+    const auto weighted = std::polar(weight, -two_pi * time / period);
+    if (system.stroke_sign(signs) * psi > still_pitch) m.over_rotation += std::abs(weighted);
+    stroke += weighted * beta;
+    pitching += weighted * psi;
+  });
   m.over_rotation /= period;
   // The pitch that opposes the stroke velocity is along -j stroke.
   m.phase = std::arg(pitching / (std::complex<double>(0.0, -1.0) * stroke));

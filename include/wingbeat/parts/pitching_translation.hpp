@@ -140,19 +140,50 @@ PitchState<S> pitch_state(const S& psi, const S& velocity, const S& stroke_veloc
   return {sin(psi), cos(psi), psi, velocity, stroke_velocity, clap, stroke_angle};
 }
 
+/// An angle of attack [rad] with its sine and cosine, which wings that pitch know without computing them.
+template <Scalar S>
+struct AngleOfAttack {
+  S angle, sine, cosine;
+};
+template <Scalar S>
+AngleOfAttack<S> angle_of_attack(const S& angle) {
+  using std::cos;
+  using std::sin;
+  return {angle, sin(angle), cos(angle)};
+}
+/// \f[ \alpha = \frac{\pi}{2} + \psi \operatorname{sign}\dot\beta \f]
+template <Scalar S>
+AngleOfAttack<S> angle_of_attack(const PitchState<S>& state, const S& stroke) {
+  return {S(0.5 * pi) + stroke * state.psi, state.cos_psi, -(stroke * state.sin_psi)};
+}
+
+/// C_N of a NormalForceCoefficient, and the Fourier series of centre_of_pressure(), by sine and cosine of the angle of
+/// attack.
+template <Scalar S>
+S normal_force_of(const NormalForceCoefficient<S>& c, const S& sine) {
+  return sine * (c.first + c.third * (S(3.0) - S(4.0) * square(sine)));
+}
+template <Scalar S>
+S centre_of_pressure_of(const S& cosine) {
+  const S c2 = square(cosine);
+  const S third = S(4.0) * c2 - S(3.0), fifth = S(5.0) + c2 * (S(16.0) * c2 - S(20.0));
+  return S(0.46) - cosine * (S(0.332) + S(0.037) * third + S(0.013) * fifth);
+}
+
 /// C_N [1] at the angle of attack alpha [rad]: a NormalForceCoefficient, or the components of lift and drag normal to
 /// the chord.
 /// \f[
 /// C_\mathrm{N} = C_\mathrm{L} \cos\alpha + C_\mathrm{D} \sin\alpha
 /// \f]
 template <Scalar S>
+S normal_force_coefficient(const BladeElement<S>& w, const PitchingWings<S>& p, const AngleOfAttack<S>& alpha) {
+  if (p.normal_force == NormalForce::normal_force) return normal_force_of(p.coefficient, alpha.sine);
+  return lift_coefficient(w.coefficients, alpha.angle) * alpha.cosine +
+         drag_coefficient(w.coefficients, alpha.angle) * alpha.sine;
+}
+template <Scalar S>
 S normal_force_coefficient(const BladeElement<S>& w, const PitchingWings<S>& p, const S& alpha) {
-  using std::cos;
-  using std::sin;
-  if (p.normal_force == NormalForce::normal_force) {
-    return p.coefficient.first * sin(alpha) + p.coefficient.third * sin(S(S(3.0) * alpha));
-  }
-  return lift_coefficient(w.coefficients, alpha) * cos(alpha) + drag_coefficient(w.coefficients, alpha) * sin(alpha);
+  return normal_force_coefficient(w, p, angle_of_attack(alpha));
 }
 
 /// C_T [1] of a force along the chord; none of a NormalForceCoefficient.
@@ -171,7 +202,7 @@ S tangential_force_coefficient(const BladeElement<S>& w, const PitchingWings<S>&
 template <Scalar S>
 S centre_of_pressure(const S& alpha) {
   using std::cos;
-  return S(0.46) - S(0.332) * cos(alpha) - S(0.037) * cos(S(S(3.0) * alpha)) - S(0.013) * cos(S(S(5.0) * alpha));
+  return centre_of_pressure_of(S(cos(alpha)));
 }
 
 /// Centre of pressure after Chen and others (IROS 2016), from a quarter of the chord to its half, whichever edge leads:
@@ -189,8 +220,13 @@ S centre_of_pressure_chen(const S& alpha) {
 
 /// By the law that the wings have.
 template <Scalar S>
+S centre_of_pressure(const PitchingWings<S>& p, const AngleOfAttack<S>& alpha) {
+  return p.centre_of_pressure == CentreOfPressure::chen ? centre_of_pressure_chen(alpha.angle)
+                                                        : centre_of_pressure_of(alpha.cosine);
+}
+template <Scalar S>
 S centre_of_pressure(const PitchingWings<S>& p, const S& alpha) {
-  return p.centre_of_pressure == CentreOfPressure::chen ? centre_of_pressure_chen(alpha) : centre_of_pressure(alpha);
+  return centre_of_pressure(p, angle_of_attack(alpha));
 }
 
 /// What the motion of a wing through the air makes of it, without rotation; against positive velocities.
@@ -228,17 +264,17 @@ void add_tip_drag(const BladeElement<S>& w, const PitchState<S>& state, const S&
 /// \f]
 template <Scalar S>
 TranslationLoads<S> translation_loads(const BladeElement<S>& w, const PitchingWings<S>& p, const S& s2, const S& s3,
-                                      const S& s22, const PitchState<S>& state, const S& stroke, const S& alpha) {
-  using std::cos;
+                                      const S& s22, const PitchState<S>& state, const S& stroke,
+                                      const AngleOfAttack<S>& alpha) {
   const S speed = stroke * state.stroke_velocity, arm = centre_of_pressure(p, alpha) - p.axis;
   const S rho = w.air_density * state.clap;
   const S q = S(0.5) * rho * normal_force_coefficient(w, p, alpha) * speed * state.stroke_velocity;
   TranslationLoads<S> loads{q * (s2 - w.tip.s2), q * (s3 - w.tip.s3), q * arm * (s22 - w.tip.s22)};
   if (acts(w.tip.s3)) add_tip_drag(w, state, stroke, arm, loads);
   if (acts(w.coefficients.tangential)) {
-    const S along = S(0.5) * rho * tangential_force_coefficient(w, p, alpha) * square(state.stroke_velocity);
+    const S along = S(0.5) * rho * tangential_force_coefficient(w, p, alpha.angle) * square(state.stroke_velocity);
     loads.tangential_lift = -along * (s2 - w.tip.s2) * state.cos_psi;
-    loads.tangential_moment = stroke * along * (s3 - w.tip.s3) * cos(alpha);
+    loads.tangential_moment = stroke * along * (s3 - w.tip.s3) * alpha.cosine;
   }
   return loads;
 }
@@ -254,7 +290,7 @@ void add_strip_in_wake(const BladeElement<S>& w, const PitchingWings<S>& p, cons
                        TranslationLoads<S>& sum) {
   using std::cos;
   const StripFlow<S> flow = strip_flow(w.wake.velocity, strip, S(stroke * state.stroke_velocity));
-  const S angle = alpha - flow.inflow_angle;
+  const AngleOfAttack<S> angle = angle_of_attack(S(alpha - flow.inflow_angle));
   const S closeness = S(1.0) + (state.clap - S(1.0)) * square(flow.cosine);
   const S pressure = S(0.5) * w.air_density * flow.square_of_speed * strip.area * closeness;
   const S force = stroke * pressure * (normal_force_coefficient(w, p, angle) - even * square(flow.sine));
@@ -262,7 +298,7 @@ void add_strip_in_wake(const BladeElement<S>& w, const PitchingWings<S>& p, cons
   sum.stroke_moment = sum.stroke_moment + force * strip.radius;
   sum.pitch_moment = sum.pitch_moment + force * strip.chord * (centre_of_pressure(p, angle) - p.axis);
   if (acts(w.coefficients.tangential)) {
-    const S along = pressure * tangential_force_coefficient(w, p, angle);
+    const S along = pressure * tangential_force_coefficient(w, p, angle.angle);
     sum.tangential_lift = sum.tangential_lift - along * state.cos_psi;
     sum.tangential_moment = sum.tangential_moment + stroke * along * strip.radius * cos(alpha);
   }
@@ -291,17 +327,6 @@ StripAngle<S> strip_angle(const PitchingWings<S>& p, const S& u, const S& w, con
   }
   const S per_speed = S(1.0) / speed;
   return {false, S(0.0), stroke * (u * cos_psi - w * sin_psi) * per_speed, -((u * sin_psi + w * cos_psi) * per_speed)};
-}
-/// C_N and centre_of_pressure() by sine and cosine of the angle of attack.
-template <Scalar S>
-S normal_force_of(const NormalForceCoefficient<S>& c, const S& sine) {
-  return sine * (c.first + c.third * (S(3.0) - S(4.0) * square(sine)));
-}
-template <Scalar S>
-S centre_of_pressure_of(const S& cosine) {
-  const S c2 = square(cosine);
-  const S third = S(4.0) * c2 - S(3.0), fifth = S(5.0) + c2 * (S(16.0) * c2 - S(20.0));
-  return S(0.46) - cosine * (S(0.332) + S(0.037) * third + S(0.013) * fifth);
 }
 
 /// Force along the chord towards the trailing edge [N], and the same times the radius [N m].

@@ -96,13 +96,13 @@ template <Scalar S, class InWake>
 PitchAeroLoads<S> aero_loads_of(const BladeElement<S>& w, const PitchingWings<S>& p, const S& s2, const S& s3,
                                 const PitchChordMoments<S>& moments, const PitchState<S>& state, const S& stroke,
                                 const S& turn, const InWake& in_wake) {
-  const S alpha = S(0.5 * pi) + stroke * state.psi;
+  const AngleOfAttack<S> alpha = angle_of_attack(state, stroke);
   TranslationLoads<S> translation;
-  if (has_wake(w) || has_flow(w)) in_wake(alpha, translation);
+  if (has_wake(w) || has_flow(w)) in_wake(alpha.angle, translation);
   else translation = translation_loads(w, p, s2, s3, moments.s22, state, stroke, alpha);
   const auto [rotation, damping] = pitch_rotation(w, p, moments.s40, state, stroke, turn);
   PitchAeroLoads<S> loads;
-  loads.angle_of_attack = alpha;
+  loads.angle_of_attack = alpha.angle;
   loads.normal_force = translation.normal + rotation * moments.s21;
   loads.stroke_moment =
       (translation.stroke_moment + rotation * moments.s22) * state.cos_psi + translation.tangential_moment;

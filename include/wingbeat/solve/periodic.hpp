@@ -126,7 +126,9 @@ class IterateInverse {
   /// The derivative is that of `iterate`.
   IterateInverse(const System& system, const Iterate<System>& iterate)
       : derivative_(monodromy_product(system, system.template cast<Jet<int(n)>>(), iterate)),
-        inverse_(derivative_.matrix()) {
+        inverse_(derivative_.matrix()),
+        at_(iterate.steps.front().y),
+        steps_error_(10.0 * iterate.tolerance) {
     for (std::size_t k = 0; k < n * n; ++k) inverse_[k] = (k % (n + 1) == 0 ? 1.0 : 0.0) - inverse_[k];
     if (!invert(int(n), inverse_.data())) return;
     const State scale = system.error_scale(iterate.steps.front().y);
@@ -141,6 +143,11 @@ class IterateInverse {
   }
 
   const MatrixProduct<n>& derivative() const { return derivative_; }
+
+  /// True where it serves an iterate from `start` as that iterate's own would, but for a tenth of what it moves by.
+  bool serves(const System& system, const State& start) const {
+    return isolated_ && amplification_ * (steps_error_ + scaled_distance(system, at_, start)) < 0.1;
+  }
 
   /// False where something drifts freely: neither a fixed point nor errors of it are to be had from the derivative.
   bool isolated() const { return isolated_; }
@@ -167,6 +174,8 @@ class IterateInverse {
  private:
   MatrixProduct<n> derivative_;
   std::array<double, n * n> inverse_;
+  State at_;            ///< where the iterate began
+  double steps_error_;  ///< of the derivative, at most
   bool isolated_ = false;
   double amplification_ = 1.0;
 };
@@ -241,9 +250,10 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
   // quickly, the return map's derivative tells.
   bool contracts = false, moved_by_newton = true, known = false;
   double amplification = 1.0, cancellation = 1.0, off = 1.0;
-  double imbalance = 0.0;
+  double imbalance = 0.0, imbalance_before = std::numeric_limits<double>::infinity();
   int repeats = 0, rebalanced = 0;
-  std::optional<MatrixProduct<n>> derivative;  // of the return map along the iterate as it is
+  std::optional<MatrixProduct<n>> derivative;             // of the return map along the iterate as it is
+  std::optional<detail::IterateInverse<System>> earlier;  // along an iterate before
   // A fine iterate too many costs twice what a coarse one does: the next may be thought near where it hardly is.
   const auto is_near_after = [&](double distance) {
     return forgets && distance * options.expected_multiplier < 2.0 * near_quickly;
@@ -316,6 +326,16 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     const double position_error = 0.7 * detail::switch_tolerance(iterate_options.tolerance);
     std::optional<detail::IterateInverse<System>> inverse;
     if (is_fine && slow) {
+      // Far from the orbit an earlier iterate's derivative leads as near as its own would; once, in case it does not.
+      State moved = y;
+      if (earlier && earlier->serves(system, start) && earlier->move(system, iterate, moved) &&
+          detail::scaled_distance(system, start, moved) >= near) {
+        earlier.reset();
+        y = moved;
+        moved_by_newton = true;
+        ++summary.newton_steps;
+        continue;
+      }
       derivative = inverse.emplace(system, iterate).derivative();
       ++summary.iterates;
       derivatives_taken();
@@ -345,6 +365,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
         if (off <= closed || residual <= 5.0 * rounding) summary.status = PeriodicStatus::converged;
       }
       if (summary.status != PeriodicStatus::converged && good) {
+        earlier = inverse;
         y = moved;
         moved_by_newton = true;
         ++summary.newton_steps;
@@ -378,8 +399,9 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
         cancellation = needed;
         closed = 0.1 * options.tolerance / cancellation;
         tolerances[2] = std::max(fine / (amplification * cancellation), tightest);
-      } else if (!finest && open && rebalanced++ < 4) {
-        // Errors of steps that estimates do not see.
+      } else if (!finest && open && imbalance < 0.5 * imbalance_before && rebalanced++ < 4) {
+        // Errors of steps that estimates do not see, as long as finer ones make them less.
+        imbalance_before = imbalance;
         tolerances[2] = std::max(tolerances[2] * std::clamp(0.2 * options.tolerance / imbalance, 1e-3, 0.2), tightest);
       } else {
         break;
@@ -395,15 +417,17 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     const bool closes = forgets && level > 0 ? is_near_after(residual) : residual < (forgets ? 0.5 : 0.1);
     const bool ask = level + 2 == tolerances.size() && closes && !contracts && !known && !forgets;
     if ((stalls && residual < 0.5) || ask) {
-      const detail::IterateInverse<System> of_iterate(system, iterate);
-      ++summary.iterates;
-      derivatives_taken();
+      if (stalls || !earlier || !earlier->serves(system, start)) {
+        earlier.emplace(system, iterate);
+        ++summary.iterates;
+        derivatives_taken();
+      }
       known = ask;
       if (ask) {
-        amplification = of_iterate.amplification();
+        amplification = earlier->amplification();
         tolerances[2] = std::max(fine / amplification, tightest);
       }
-      if ((stalls || amplification > 1.0 + slow_contraction) && of_iterate.move(system, iterate, y)) {
+      if ((stalls || amplification > 1.0 + slow_contraction) && earlier->move(system, iterate, y)) {
         ++summary.newton_steps;
         moved_by_newton = true;
         // The fine iterate may start from here only if the step was small.
