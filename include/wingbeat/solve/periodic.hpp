@@ -327,8 +327,9 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     std::optional<detail::IterateInverse<System>> inverse;
     if (is_fine && slow) {
       // Far from the orbit an earlier iterate's derivative leads as near as its own would; once, in case it does not.
+      // By few states a derivative takes little longer than an iterate.
       State moved = y;
-      if (earlier && earlier->serves(system, start) && earlier->move(system, iterate, moved) &&
+      if (n > 5 && earlier && earlier->serves(system, start) && earlier->move(system, iterate, moved) &&
           detail::scaled_distance(system, start, moved) >= near) {
         earlier.reset();
         y = moved;
@@ -399,7 +400,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
         cancellation = needed;
         closed = 0.1 * options.tolerance / cancellation;
         tolerances[2] = std::max(fine / (amplification * cancellation), tightest);
-      } else if (!finest && open && imbalance < 0.5 * imbalance_before && rebalanced++ < 4) {
+      } else if (!finest && open && imbalance < 0.8 * imbalance_before && rebalanced++ < 4) {
         // Errors of steps that estimates do not see, as long as finer ones make them less.
         imbalance_before = imbalance;
         tolerances[2] = std::max(tolerances[2] * std::clamp(0.2 * options.tolerance / imbalance, 1e-3, 0.2), tightest);
@@ -417,11 +418,9 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     const bool closes = forgets && level > 0 ? is_near_after(residual) : residual < (forgets ? 0.5 : 0.1);
     const bool ask = level + 2 == tolerances.size() && closes && !contracts && !known && !forgets;
     if ((stalls && residual < 0.5) || ask) {
-      if (stalls || !earlier || !earlier->serves(system, start)) {
-        earlier.emplace(system, iterate);
-        ++summary.iterates;
-        derivatives_taken();
-      }
+      earlier.emplace(system, iterate);
+      ++summary.iterates;
+      derivatives_taken();
       known = ask;
       if (ask) {
         amplification = earlier->amplification();
