@@ -21,8 +21,9 @@
 
 namespace wingbeat::detail {
 
-/// More partials, as gradients have, take longer where they are inlined.
-constexpr int inlined_partials_max = WINGBEAT_JET_PARTIALS_MAX;
+/// More partials, as gradients have, take longer where they are inlined; one or two are inlined as they are.
+template <int N>
+constexpr bool inlines_partials = N > 2 && N <= WINGBEAT_JET_PARTIALS_MAX;
 using PartialPair [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
 
 /// A dual number of the value and of partials, two by two, as `partial` has them of other numbers.
@@ -49,50 +50,50 @@ template <int N, class Partial>
 namespace ceres {
 
 template <int N>
-  requires(N <= wingbeat::detail::inlined_partials_max)
+  requires(wingbeat::detail::inlines_partials<N>)
 WINGBEAT_JET_INLINE Jet<double, N> operator+(const Jet<double, N>& f, const Jet<double, N>& g) {
   return wingbeat::detail::jet_of<N>(f.a + g.a, [&](auto d) { return d(f) + d(g); });
 }
 
 template <int N>
-  requires(N <= wingbeat::detail::inlined_partials_max)
+  requires(wingbeat::detail::inlines_partials<N>)
 WINGBEAT_JET_INLINE Jet<double, N> operator-(const Jet<double, N>& f, const Jet<double, N>& g) {
   return wingbeat::detail::jet_of<N>(f.a - g.a, [&](auto d) { return d(f) - d(g); });
 }
 
 template <int N>
-  requires(N <= wingbeat::detail::inlined_partials_max)
+  requires(wingbeat::detail::inlines_partials<N>)
 WINGBEAT_JET_INLINE Jet<double, N> operator-(const Jet<double, N>& f) {
   return wingbeat::detail::jet_of<N>(-f.a, [&](auto d) { return -d(f); });
 }
 
 template <int N>
-  requires(N <= wingbeat::detail::inlined_partials_max)
+  requires(wingbeat::detail::inlines_partials<N>)
 WINGBEAT_JET_INLINE Jet<double, N> operator*(const Jet<double, N>& f, const Jet<double, N>& g) {
   return wingbeat::detail::jet_of<N>(f.a * g.a, [&](auto d) { return f.a * d(g) + d(f) * g.a; });
 }
 
 template <int N>
-  requires(N <= wingbeat::detail::inlined_partials_max)
+  requires(wingbeat::detail::inlines_partials<N>)
 WINGBEAT_JET_INLINE Jet<double, N> operator*(const Jet<double, N>& f, double s) {
   return wingbeat::detail::jet_of<N>(f.a * s, [&](auto d) { return d(f) * s; });
 }
 
 template <int N>
-  requires(N <= wingbeat::detail::inlined_partials_max)
+  requires(wingbeat::detail::inlines_partials<N>)
 WINGBEAT_JET_INLINE Jet<double, N> operator*(double s, const Jet<double, N>& f) {
   return f * s;
 }
 
 template <int N>
-  requires(N <= wingbeat::detail::inlined_partials_max)
+  requires(wingbeat::detail::inlines_partials<N>)
 WINGBEAT_JET_INLINE Jet<double, N> operator/(const Jet<double, N>& f, const Jet<double, N>& g) {
   const double inverse = 1.0 / g.a, quotient = f.a * inverse;
   return wingbeat::detail::jet_of<N>(quotient, [&](auto d) { return (d(f) - quotient * d(g)) * inverse; });
 }
 
 template <int N>
-  requires(N <= wingbeat::detail::inlined_partials_max)
+  requires(wingbeat::detail::inlines_partials<N>)
 WINGBEAT_JET_INLINE Jet<double, N> operator/(const Jet<double, N>& f, double s) {
   return f * (1.0 / s);
 }
