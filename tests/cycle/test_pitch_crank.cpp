@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "cycle/pitch_phase.hpp"
 #include "vehicle/pitching_vehicle.hpp"
 #include "vehicle/recorded_impacts.hpp"
 #include "vehicle/return_map_derivative.hpp"
@@ -42,10 +43,12 @@ struct PitchCrankOrbit {
   double total(Integral which) const { return total(std::size_t(which)); }
 };
 
-PitchCrankOrbit crank_orbit(const PitchCrank& system, double tolerance) {
+PitchCrankOrbit crank_orbit(const PitchCrank& system, double tolerance,
+                            solver::Method method = solver::Method::explicit_pair) {
   PitchCrankOrbit orbit;
   const PitchCrank::State guess{120.0, 0.1, 0.0, 0.0};
-  orbit.summary = solver::solve_periodic(system, guess, {.tolerance = tolerance, .max_steps = 2000}, orbit.cycle);
+  orbit.summary =
+      solver::solve_periodic(system, guess, {.tolerance = tolerance, .method = method, .max_steps = 2000}, orbit.cycle);
   EXPECT_EQ(orbit.summary.status, solver::PeriodicStatus::converged) << describe(orbit.summary.status);
   return orbit;
 }
@@ -97,6 +100,17 @@ TEST(PitchCrank, StiffHingesAreTheLawWithoutPitching) {
     before = off;
   }
   EXPECT_LT(before, 1e-2);
+}
+
+TEST(PitchCrank, PhaseIsThatOfTheSolutionsOwnValues) {
+  for (const solver::Method method : {solver::Method::explicit_pair, solver::Method::radau}) {
+    for (const double stop : {infinity, 0.35}) {
+      const PitchCrank system = pitch_crank(stop < 1.0 ? 2e-4 : 8e-4, stop);
+      const PitchCrankOrbit orbit = crank_orbit(system, 1e-6, method);
+      const double own = phase_by_own_values(system, orbit.cycle);
+      EXPECT_NEAR(pitch_metrics(system, orbit.cycle).phase, own, 5e-8) << int(method) << ", stop " << stop;
+    }
+  }
 }
 
 TEST(PitchCrank, StopsHoldTheWingsAndTakeTheEnergyOfImpacts) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <complex>
 
+#include "cycle/pitch_phase.hpp"
 #include "vehicle/pitching_vehicle.hpp"
 #include "vehicle/recorded_impacts.hpp"
 #include "vehicle/return_map_derivative.hpp"
@@ -208,6 +209,18 @@ TEST(PitchDirect, MeanLiftHasTheImpulsesOfImpacts) {
   }
   EXPECT_NEAR(orbit.total(Integral::lift), expected, 1e-6 * std::abs(expected));
   EXPECT_GT(std::abs(without_impacts - expected), 1e-3 * std::abs(expected));
+}
+
+TEST(PitchDirect, PhaseIsThatOfTheSolutionsOwnValues) {
+  for (const solver::Method method : {solver::Method::explicit_pair, solver::Method::radau}) {
+    for (const double stop : {infinity, 0.5}) {
+      Vehicle<double> v = pitching_vehicle(2e-4);
+      set_stops(v.pitch.hinge, stop);
+      const PitchOrbit orbit = pitch_orbit(pitch_system(v), 1e-6, {}, method);
+      const double own = phase_by_own_values(orbit.system, orbit.cycle);
+      EXPECT_NEAR(pitch_metrics(orbit.system, orbit.cycle).phase, own, 5e-8) << int(method) << ", stop " << stop;
+    }
+  }
 }
 
 // The saltation matrix of impacts, against two iterates from starts a little apart.

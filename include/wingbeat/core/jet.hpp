@@ -26,7 +26,7 @@ template <int N>
 constexpr bool inlines_partials = N > 2 && N <= WINGBEAT_JET_PARTIALS_MAX;
 using PartialPair [[gnu::vector_size(16), gnu::aligned(8), gnu::may_alias]] = double;
 
-/// A dual number of the value and of partials, two by two, as `partial` has them of other numbers.
+/// The dual number of a value and of the partials that `partial` makes, two by two, of those of other numbers.
 template <int N, class Partial>
 [[gnu::always_inline]] inline Jet<N> jet_of(double value, const Partial& partial) {
   Jet<N> result;

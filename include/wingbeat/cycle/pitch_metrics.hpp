@@ -81,9 +81,9 @@ double pitch_at_start(const solver::Iterate<System>& cycle, std::size_t n) {
   return System::local_pitch(step.y);
 }
 
-/// The polynomial of degree 5 through values and slopes at the ends and in the middle of a piece, at gauss_nodes.
+/// The polynomial of degree 5 through values and slopes at the ends and in the middle of a step, at gauss_nodes.
 struct NodeWeights {
-  std::array<std::array<double, 3>, gauss_nodes.size()> value, slope;  ///< slopes are those over the piece's length
+  std::array<std::array<double, 3>, gauss_nodes.size()> value, slope;  ///< slopes are those times the step's length
 };
 constexpr NodeWeights node_weights() {
   NodeWeights w{};
@@ -125,7 +125,6 @@ PitchPoint pitch_point(const System& system, double x, double time, const typena
 template <class System, class Use>
 void for_pitch_nodes(const System& system, const solver::Iterate<System>& cycle, const Use& use) {
   static constexpr NodeWeights weights = node_weights();
-  constexpr double longest = two_pi / 24.0;  // of a piece of steps that stiff vehicles take
   double start = 0.0;
   for (std::size_t n = 0; n < cycle.steps.size(); ++n) {
     const auto& step = cycle.steps[n];
@@ -144,28 +143,21 @@ void for_pitch_nodes(const System& system, const solver::Iterate<System>& cycle,
       if constexpr (!System::turns) time = (x - step.x) / system.phase_rate();
       return pitch_point(system, x, time, y, system.template rates<false>(x, y, step.signs).dy);
     };
-    const int pieces = 1 + int(step.h / longest);
-    const double length = step.h / pieces;
-    PitchPoint from = pitch_point(system, step.x, 0.0, step.y, step.first.dy);
-    for (int piece = 0; piece < pieces; ++piece) {
-      const PitchPoint points[] = {from, point((piece + 0.5) / pieces), point((piece + 1.0) / pieces)};
-      for (std::size_t k = 0; k < gauss_nodes.size(); ++k) {
-        const auto at_node = [&](Sloped PitchPoint::* number) {
-          double sum = 0.0;
-          for (std::size_t p = 0; p < 3; ++p) {
-            const Sloped& known = points[p].*number;
-            sum += weights.value[k][p] * known.value + weights.slope[k][p] * length * known.slope;
-          }
-          return sum;
-        };
-        const double x = step.x + (piece + 0.5 * (1.0 + gauss_nodes[k])) * length;
-        double stroke;
-        if constexpr (System::turns) stroke = system.stroke_angle(x, step.y);
-        else stroke = at_node(&PitchPoint::stroke);
-        use(0.5 * length * gauss_weights[k] * at_node(&PitchPoint::pace), start + at_node(&PitchPoint::time),
-            at_node(&PitchPoint::pitch), stroke, step.signs);
-      }
-      from = points[2];
+    const PitchPoint points[] = {pitch_point(system, step.x, 0.0, step.y, step.first.dy), point(0.5), point(1.0)};
+    for (std::size_t k = 0; k < gauss_nodes.size(); ++k) {
+      const auto at_node = [&](Sloped PitchPoint::* number) {
+        double sum = 0.0;
+        for (std::size_t p = 0; p < 3; ++p) {
+          const Sloped& known = points[p].*number;
+          sum += weights.value[k][p] * known.value + weights.slope[k][p] * step.h * known.slope;
+        }
+        return sum;
+      };
+      double stroke;
+      if constexpr (System::turns) stroke = system.stroke_angle(step.x + 0.5 * (1.0 + gauss_nodes[k]) * step.h, step.y);
+      else stroke = at_node(&PitchPoint::stroke);
+      use(0.5 * step.h * gauss_weights[k] * at_node(&PitchPoint::pace), start + at_node(&PitchPoint::time),
+          at_node(&PitchPoint::pitch), stroke, step.signs);
     }
     start += step.dq[std::size_t(Integral::time)];
   }

@@ -286,11 +286,10 @@ TranslationLoads<S> translation_loads(const BladeElement<S>& w, const PitchingWi
 /// moment jump where the stroke reverses.
 template <Scalar S>
 void add_strip_in_wake(const BladeElement<S>& w, const PitchingWings<S>& p, const WakeStrip<S>& strip,
-                       const PitchState<S>& state, const S& stroke, const S& alpha, const S& even,
+                       const PitchState<S>& state, const S& stroke, const AngleOfAttack<S>& alpha, const S& even,
                        TranslationLoads<S>& sum) {
-  using std::cos;
   const StripFlow<S> flow = strip_flow(w.wake.velocity, strip, S(stroke * state.stroke_velocity));
-  const AngleOfAttack<S> angle = angle_of_attack(S(alpha - flow.inflow_angle));
+  const AngleOfAttack<S> angle = angle_of_attack(S(alpha.angle - flow.inflow_angle));
   const S closeness = S(1.0) + (state.clap - S(1.0)) * square(flow.cosine);
   const S pressure = S(0.5) * w.air_density * flow.square_of_speed * strip.area * closeness;
   const S force = stroke * pressure * (normal_force_coefficient(w, p, angle) - even * square(flow.sine));
@@ -300,7 +299,7 @@ void add_strip_in_wake(const BladeElement<S>& w, const PitchingWings<S>& p, cons
   if (acts(w.coefficients.tangential)) {
     const S along = pressure * tangential_force_coefficient(w, p, angle.angle);
     sum.tangential_lift = sum.tangential_lift - along * state.cos_psi;
-    sum.tangential_moment = sum.tangential_moment + stroke * along * strip.radius * cos(alpha);
+    sum.tangential_moment = sum.tangential_moment + stroke * along * strip.radius * alpha.cosine;
   }
 }
 
@@ -313,20 +312,16 @@ S even_normal_force(const BladeElement<S>& w, const PitchingWings<S>& p, const S
   return S(0.5) * (normal_force_coefficient(w, p, psi) + normal_force_coefficient(w, p, S(-psi)));
 }
 
-/// The angle of flow_angle() [rad], or its sine and cosine alone where no more is needed.
+/// The angle of flow_angle(); its sine and cosine alone where the wings' laws ask for no more.
 template <Scalar S>
-struct StripAngle {
-  bool known;
-  S angle, sine, cosine;
-};
-template <Scalar S>
-StripAngle<S> strip_angle(const PitchingWings<S>& p, const S& u, const S& w, const S& speed, const S& sin_psi,
-                          const S& cos_psi, const S& stroke) {
+AngleOfAttack<S> strip_angle(const PitchingWings<S>& p, const S& u, const S& w, const S& speed, const S& sin_psi,
+                             const S& cos_psi, const S& stroke) {
   if (p.normal_force != NormalForce::normal_force || p.centre_of_pressure != CentreOfPressure::fourier) {
-    return {true, flow_angle(u, w, speed, sin_psi, cos_psi, stroke), S(0.0), S(0.0)};
+    return angle_of_attack(flow_angle(u, w, speed, sin_psi, cos_psi, stroke));
   }
   const S per_speed = S(1.0) / speed;
-  return {false, S(0.0), stroke * (u * cos_psi - w * sin_psi) * per_speed, -((u * sin_psi + w * cos_psi) * per_speed)};
+  return {S(std::nan("")), stroke * (u * cos_psi - w * sin_psi) * per_speed,
+          -((u * sin_psi + w * cos_psi) * per_speed)};
 }
 
 /// Force along the chord towards the trailing edge [N], and the same times the radius [N m].
@@ -351,19 +346,16 @@ ChordwiseForce<S> add_strips_in_flow(const BladeElement<S>& w, const PitchingWin
     const S down = drift.w0 + drift.w1 * r - w.wake.velocity;
     const S square_of_speed = square(u) + square(down) + S(1e-300), speed = sqrt(square_of_speed);
     const S sine2 = square(down) / square_of_speed;
-    const StripAngle<S> flow = strip_angle(p, u, down, speed, sin_psi, state.cos_psi, own_stroke);
-    const S& angle = flow.angle;
+    const AngleOfAttack<S> angle = strip_angle(p, u, down, speed, sin_psi, state.cos_psi, own_stroke);
     const S closeness = S(1.0) + (state.clap - S(1.0)) * (S(1.0) - sine2);
     const S pressure = S(0.5) * w.air_density * S(mount.share) * square_of_speed * strip.area * closeness;
     // Of the wing `own_stroke`, of the vehicle's angles `sense` times that.
-    const S C_N = flow.known ? normal_force_coefficient(w, p, angle) : normal_force_of(p.coefficient, flow.sine);
-    const S place = flow.known ? centre_of_pressure(p, angle) : centre_of_pressure_of(flow.cosine);
-    const S force = stroke * pressure * (C_N - even * sine2);
+    const S force = stroke * pressure * (normal_force_coefficient(w, p, angle) - even * sine2);
     sum.normal = sum.normal + force;
     sum.stroke_moment = sum.stroke_moment + force * r;
-    sum.pitch_moment = sum.pitch_moment + force * strip.chord * (place - p.axis);
+    sum.pitch_moment = sum.pitch_moment + force * strip.chord * (centre_of_pressure(p, angle) - p.axis);
     if (acts(w.coefficients.tangential)) {
-      const S along = pressure * tangential_force_coefficient(w, p, angle);
+      const S along = pressure * tangential_force_coefficient(w, p, angle.angle);
       chordwise.force = chordwise.force + along;
       chordwise.by_radius = chordwise.by_radius + along * r;
     }

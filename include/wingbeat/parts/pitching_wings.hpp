@@ -98,7 +98,7 @@ PitchAeroLoads<S> aero_loads_of(const BladeElement<S>& w, const PitchingWings<S>
                                 const S& turn, const InWake& in_wake) {
   const AngleOfAttack<S> alpha = angle_of_attack(state, stroke);
   TranslationLoads<S> translation;
-  if (has_wake(w) || has_flow(w)) in_wake(alpha.angle, translation);
+  if (has_wake(w) || has_flow(w)) in_wake(alpha, translation);
   else translation = translation_loads(w, p, s2, s3, moments.s22, state, stroke, alpha);
   const auto [rotation, damping] = pitch_rotation(w, p, moments.s40, state, stroke, turn);
   PitchAeroLoads<S> loads;
@@ -129,7 +129,7 @@ PitchAeroLoads<S> aero_loads(const BladeElement<S>& w, const PitchingWings<S>& p
               loads.lift};
     }
   }
-  return aero_loads_of(w, p, w.s2, w.s3, p.moments, state, stroke, turn, [&](const S& alpha, TranslationLoads<S>& sum) {
+  const auto in_wake = [&](const AngleOfAttack<S>& alpha, TranslationLoads<S>& sum) {
     const S even = even_normal_force(w, p, state.psi);
     if constexpr (ScalarTraits<S>::reads_tables) {
       if (has_flow(w)) {
@@ -149,7 +149,8 @@ PitchAeroLoads<S> aero_loads(const BladeElement<S>& w, const PitchingWings<S>& p
     if (acts(w.tip.s3)) {
       add_tip_drag(w, state, stroke, S(centre_of_pressure(p, alpha) - p.axis), sum);
     }
-  });
+  };
+  return aero_loads_of(w, p, w.s2, w.s3, p.moments, state, stroke, turn, in_wake);
 }
 
 /// Wings that pitch, as the stroke sees them. The moment M of the drive and of the stroke's springs turns them with the

@@ -81,7 +81,7 @@ StripSums<S> strip_sums(const BladeElement<S>& w, const PitchingWings<S>& p, con
 
     const PitchAeroLoads<S> aero =
         aero_loads_of(w, p, strip.s2, strip.s3, strip.moments, state, stroke, sign_of(state.velocity),
-                      [&](const S& alpha, TranslationLoads<S>& in_wake) {
+                      [&](const AngleOfAttack<S>& alpha, TranslationLoads<S>& in_wake) {
                         const S r = strip.s3 / strip.s2, area = strip.s2 / square(r);
                         add_strip_in_wake(w, p, {r, area, strip.moments.s22 / strip.s2}, state, stroke, alpha,
                                           even_normal_force(w, p, state.psi), in_wake);

@@ -327,7 +327,7 @@ PeriodicSummary solve_periodic(const System& system, const typename System::Stat
     std::optional<detail::IterateInverse<System>> inverse;
     if (is_fine && slow) {
       // Far from the orbit an earlier iterate's derivative leads as near as its own would; once, in case it does not.
-      // By few states a derivative takes little longer than an iterate.
+      // With few states the derivative takes no longer than an iterate from a start that is a little worse.
       State moved = y;
       if (n > 5 && earlier && earlier->serves(system, start) && earlier->move(system, iterate, moved) &&
           detail::scaled_distance(system, start, moved) >= near) {
