@@ -82,8 +82,8 @@ std::string describe_flapping(const StatusEvidence& e) {
           e.frequency, e.cycles, 100.0 * e.change, e.incommensurate ? "; cycles and supply share no period" : "");
     case StatusEvidence::Kind::settled_periods: {
       std::string text =
-          format("flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to %.1g",
-                 e.frequency, e.time, e.cycles, e.change);
+          format("flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to %.1g%s",
+                 e.frequency, e.time, e.cycles, e.change, e.extrapolated ? " (slow convergence, extrapolated)" : "");
       if (e.steps > 0) {
         text += format(", metrics to about %.1g: the %ld integration steps allowed are used up", e.accuracy, e.steps);
       }

@@ -29,6 +29,7 @@ bool cancels(const Metrics<double>& m) {
 bool CrankStartUp::cycle_done() {
   const double before = crossings_.empty() ? 0.0 : crossings_.back().time + crossings_.back().skipped;
   crossings_.push_back({now_.t, now_.moving, now_.t - before, 0.0});
+  cycle_begins();
   event(Kind::revolution);
   model_.next_cycle += two_pi;
   Coordinates<double> at_zero = now_.moving;

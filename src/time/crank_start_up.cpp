@@ -81,8 +81,6 @@ double CrankStartUp::piece_end(const TimeModel&, double stop) {
     return stop;
   }
   if (stands_for_good()) return now_.t;
-  // The current swings: no slip may hide within a step.
-  if (model_.supply.type == SupplyType::sine) stop = std::min(stop, now_.t + model_.drive_period / 64.0);
   return std::min(stop, stuck_until_);
 }
 

@@ -7,14 +7,20 @@
 namespace wingbeat::detail {
 namespace {
 
-constexpr int sticking_pieces = 512;     // of a period: how often a stuck shaft is looked at
+constexpr double farthest_skip = 1.0;    // of the state or its typical size
+constexpr int most_failed_skips = 4;
 constexpr double nearly_settled = 1e-4;  // off the orbit, where the steps allowed end before the tolerance is reached
+constexpr std::size_t watched = 16;      // periods over which changes are compared before any is skipped
 constexpr int contraction_periods = 4;   // over which the contraction is taken: complex multipliers make it uneven
 
 }  // namespace
 
 double DirectStartUp::piece_end(const TimeModel&, double stop) {
-  return now_.stuck ? std::min(stop, now_.t + period_ / sticking_pieces) : stop;
+  // Soon after it has come to rest the shaft is looked at: it may stand for good.
+  constexpr double soon = 1.0 / 512.0;
+  const bool stood = std::exchange(stands_, now_.stuck);
+  if (!now_.stuck || stood) return stop;
+  return std::min(stop, now_.t + soon * period_);
 }
 
 void DirectStartUp::step_taken(Integrator& steps, double from) {
@@ -33,7 +39,7 @@ void DirectStartUp::settle(double closure, double change) {
   result_.closure = closure;
   std::size_t first = swings_.size();
   while (first > 0 && std::abs(swings_[first - 1] / swings_.back() - 1.0) <= 1e-2) --first;
-  result_.time_to_steady = double(first) * period_;
+  result_.time_to_steady = (double(first) + periods_skipped(first)) * period_;
   result_.state = now_.moving;
   result_.crank_speed = now_.moving.speed;
   result_.current = now_.moving.current;
@@ -41,8 +47,104 @@ void DirectStartUp::settle(double closure, double change) {
                       .frequency = model_.vehicle.drive_frequency,
                       .time = result_.time_to_steady,
                       .change = change,
-                      .cycles = result_.cycles};
+                      .cycles = result_.cycles,
+                      .extrapolated = skipped_from_ > 0};
   if (pitches(model_.vehicle)) pitching_.add_to(result_.evidence, model_);
+}
+
+/// Of swings that are steady from period `first` on: how many periods a skip just before has left out in which they would
+/// not have been, had they gone on to settle as they did before it.
+double DirectStartUp::periods_skipped(std::size_t first) const {
+  constexpr std::size_t half = 24;
+  if (skipped_from_ < 2 * half || first + 1 < skipped_from_ || first > skipped_from_ + 1) return 0.0;
+  const auto away = [&](std::size_t n) { return std::abs(swings_[n] / swings_.back() - 1.0); };
+  const auto farthest = [&](std::size_t end) {
+    std::size_t at = end - half;
+    for (std::size_t n = at; n < end; ++n) at = away(n) > away(at) ? n : at;
+    return at;
+  };
+  const std::size_t late = farthest(skipped_from_), early = farthest(skipped_from_ - half);
+  if (!(away(late) > 1e-2 && away(late) < away(early))) return 0.0;
+  const double decay = std::log(away(early) / away(late)) / double(late - early);
+  return std::max(0.0, double(late) + std::log(away(late) / 1e-2) / decay - double(first));
+}
+
+std::vector<double> DirectStartUp::scaled_state() const {
+  const std::array<double, max_unknowns> y = model_.coordinates_now(), scale = model_.typical();
+  std::vector<double> x(model_.indices.count);
+  for (std::size_t n = 0; n < x.size(); ++n) x[n] = y[n] / scale[n];
+  return x;
+}
+
+/// The share of a change that the next period has, where changes become smaller from window to window; else 1.
+double DirectStartUp::lasting_rate() const {
+  if (changes_.size() < 3 * watched) return 1.0;
+  double largest[3];
+  for (std::size_t window = 0; window < 3; ++window) {
+    const auto end = changes_.end() - std::ptrdiff_t(window * watched);
+    largest[window] = *std::max_element(end - std::ptrdiff_t(watched), end);
+  }
+  if (!(largest[0] < largest[1] && largest[1] < largest[2])) return 1.0;
+  return std::pow(largest[0] / largest[2], 1.0 / double(2 * watched));
+}
+
+/// Goes on from where periods settle, where they have approached that linearly for long enough: a wing that little damps
+/// takes thousands of them.
+void DirectStartUp::skip_ahead(double change) {
+  const bool free = !now_.stuck && !now_.held && !options_.record &&
+                    (model_.vehicle.spring.stiffness > 0.0 || is_given(model_.vehicle.piezo));
+  if (!free || skips_fail_) return limit_.clear();
+  limit_.add(scaled_state());
+  const std::size_t since = changes_.size() - skipped_at_;
+  if (since < model_.indices.count + 3) return;
+  const bool again = skipped_at_ > 0;
+  const double rate = since < 3 * watched ? 1.0 : lasting_rate();
+  if (!again && !(rate < 1.0)) return;
+  const std::optional<std::vector<double>> there = limit_.limit();
+  if (!there) return;
+  const std::vector<double> here = scaled_state();
+  double way = 0.0, size = 1.0;
+  for (std::size_t n = 0; n < here.size(); ++n) {
+    way = std::max(way, std::abs((*there)[n] - here[n]));
+    size = std::max(size, std::abs(here[n]));
+  }
+  // Beyond what the changes so far would add up to, they are not understood.
+  const double summed = rate < 1.0 ? std::min(farthest_skip * size, 3.0 * change / (1.0 - rate)) : 0.0;
+  if (!(way < std::max(summed, again ? 0.5 * last_way_ : 0.0))) return;
+
+  before_skip_ = now_;
+  change_before_skip_ = change;
+  last_way_ = way;
+  skipped_at_ = changes_.size();
+  if (!again) skipped_from_ = swings_.size(), first_skip_ = skipped_at_;
+  std::array<double, max_unknowns> y = model_.coordinates_now();
+  const std::array<double, max_unknowns> scale = model_.typical();
+  for (std::size_t n = 0; n < here.size(); ++n) y[n] = (*there)[n] * scale[n];
+  const PitchHinge<double>& hinge = model_.vehicle.pitch.hinge;
+  model_.TimeModel::set(now_.t, y.data());  // no integrals behind them
+  if (model_.indices.pitching) {
+    now_.moving.pitch_angle = std::clamp(now_.moving.pitch_angle, hinge.stop_low, hinge.stop_high);
+  }
+  before_ = model_.coordinates_now();
+  swing_ = std::abs(bent());
+  limit_.clear();
+}
+
+/// True where the first period after a skip did not change less than the one before it: back to before it, for good
+/// where that was the first.
+bool DirectStartUp::skip_failed(double change) {
+  if (skipped_at_ == 0 || changes_.size() != skipped_at_ + 1 || change < 0.5 * change_before_skip_) return false;
+  const double t = now_.t, loss = now_.impact_loss;
+  const CycleIntegrals<double> impulses = now_.impulses;
+  now_ = before_skip_;
+  now_.t = t, now_.impact_loss = loss, now_.impulses = impulses;
+  before_ = model_.coordinates_now();
+  changes_.back() = change_before_skip_;
+  swing_ = std::abs(bent());
+  skips_fail_ = skipped_at_ == first_skip_ || ++failed_skips_ == most_failed_skips;
+  if (skipped_at_ == first_skip_) skipped_from_ = 0;
+  limit_.clear();
+  return true;
 }
 
 /// True where periods come no nearer to each other. Whatever settles within `max_cycles` more than halves its changes
@@ -58,6 +160,7 @@ bool DirectStartUp::never_repeats() const {
 
 void DirectStartUp::period_done() {
   ++result_.cycles;
+  cycle_begins();
   event(Kind::revolution);
   swings_.push_back(swing_);
   swing_ = std::abs(bent());
@@ -73,9 +176,10 @@ void DirectStartUp::period_done() {
   }
   before_ = y;
   changes_.push_back(change);
-  const std::size_t n = changes_.size();
+  if (skip_failed(change)) return;
+  const std::size_t n = changes_.size(), known = n - skipped_at_;
   double rate = 1.0;
-  if (n > contraction_periods + 1) {
+  if (known > contraction_periods + 1) {
     const auto over = [&](std::size_t periods) {
       return std::pow(change / changes_[n - 1 - periods], 1.0 / double(periods));
     };
@@ -113,6 +217,7 @@ void DirectStartUp::period_done() {
     const double left = std::max(3e-3 * options_.tolerance, 1e-2 * off);
     relative_tolerance_ = std::min(relative_tolerance_, std::max(tightest_, left * (1.0 - rate)));
   }
+  if (!close) skip_ahead(change);
   if (close || change < noise || model_.measuring) begin_measuring();
   if (result_.cycles >= options_.max_cycles || never_repeats()) {
     give_up({.kind = Evidence::cycles_differ, .change = change, .cycles = result_.cycles});
@@ -124,7 +229,7 @@ bool DirectStartUp::out_of_budget() {
     return last_metrics_ && last_off_ < nearly_settled &&
            closes(energy_audit(*last_metrics_), std::max(options_.tolerance, last_apart_));
   };
-  if (result_.steps >= options_.max_steps && as_good_as_steps_allow()) {
+  if (spent() >= options_.max_steps && as_good_as_steps_allow()) {
     // That it flaps is beyond doubt, its metrics are as good as the steps allowed make them.
     result_.metrics = last_metrics_;
     settle(last_off_, changes_.back());

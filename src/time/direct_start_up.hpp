@@ -4,6 +4,7 @@
 #include <array>
 #include <vector>
 
+#include "time/sequence_limit.hpp"
 #include "time/start_up_run.hpp"
 
 namespace wingbeat::detail {
@@ -28,6 +29,11 @@ class DirectStartUp : public StartUpRun {
   bool rests_for_good();
   bool creeps_to_rest();
   bool never_repeats() const;
+  double periods_skipped(std::size_t first) const;
+  std::vector<double> scaled_state() const;
+  double lasting_rate() const;
+  void skip_ahead(double change);
+  bool skip_failed(double change);
 
   const double period_ = 1.0 / model_.vehicle.drive_frequency;
   double last_off_ = infinity;    ///< how far the last period was from the orbit, relative
@@ -36,6 +42,7 @@ class DirectStartUp : public StartUpRun {
   /// How far the springs are bent [rad].
   double bent() const { return now_.moving.angle - model_.vehicle.spring.rest_angle; }
 
+  bool stands_ = false;  ///< when the last piece began
   double swing_ = 0.0;  ///< largest |bent()| of this period at the ends of steps
   std::vector<double> swings_;
   double stroke_before_ = 0.0;
@@ -43,6 +50,14 @@ class DirectStartUp : public StartUpRun {
   int creeping_ = 0;                                ///< periods so far
   std::array<double, max_unknowns> before_{};
   std::vector<double> changes_;
+
+  SequenceLimit limit_;
+  TimeModel::State before_skip_;
+  double change_before_skip_ = 0.0, last_way_ = 0.0;
+  std::size_t skipped_at_ = 0, first_skip_ = 0;  ///< changes_ before the last skip and the first; 0: none
+  std::size_t skipped_from_ = 0;                 ///< swings_ before the first
+  int failed_skips_ = 0;
+  bool skips_fail_ = false;
 };
 
 }  // namespace wingbeat::detail

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <memory>
 #include <optional>
 
@@ -87,7 +88,9 @@ PieceOutcome pass_piece(Model& model, double until, Watch& watch, const MakeInte
   Integrator& steps = integrator();
   model.unknowns(steps.state());
   auto directions = model.directions();
-  if (!steps.restart(model.now.t, directions.data(), std::min(model.longest_step(), stop - model.now.t), stop)) {
+  const double horizon = std::min(model.longest_step(), stop - model.now.t);
+  const double longest = model.now.stuck ? model.longest_step() : std::numeric_limits<double>::infinity();
+  if (!steps.restart(model.now.t, directions.data(), horizon, stop, longest)) {
     return PieceOutcome::not_started;
   }
   while (true) {

@@ -34,8 +34,9 @@ class Integrator {
   /// The unknowns at time(); set before restart().
   virtual double* state() = 0;
   /// Starts afresh from state() at time t. `directions`: which sign changes of each root function count (+1 rising,
-  /// -1 falling, 0 both). `horizon`: a time ahead that bounds the first step. Steps end at `stop` exactly.
-  virtual bool restart(double t, int* directions, double horizon, double stop) = 0;
+  /// -1 falling, 0 both). `horizon`: a time ahead that bounds the first step. Steps end at `stop` exactly. `longest`:
+  /// the longest step of one that looks at the root functions several times within it [s].
+  virtual bool restart(double t, int* directions, double horizon, double stop, double longest) = 0;
   /// One internal step, cut short at a root or at the stop time; state() and time() are there then. Throws Cancelled.
   virtual Outcome advance() = 0;
   virtual double time() const = 0;

@@ -75,10 +75,11 @@ class OwnIntegrator : public Integrator {
   double time() const override { return t_; }
   bool found(int root) const override { return found_[at(root)]; }
 
-  bool restart(double t, int* directions, double horizon, double stop) override {
+  bool restart(double t, int* directions, double horizon, double stop, double longest) override {
     t_ = from_ = t;
     stop_ = stop;
     horizon_ = horizon;
+    longest_ = std::min(longest, problem_.longest_step);
     directions_.assign(directions, directions + problem_.roots);
     std::copy_n(state_.begin(), N, y_.begin());
     std::fill(signs_.begin(), signs_.end(), 0.0);
@@ -94,7 +95,7 @@ class OwnIntegrator : public Integrator {
     start_ = y_;
     start_rates_ = rates_;
     std::fill(found_.begin(), found_.end(), false);
-    double h = std::min(step_ > 0.0 ? step_ : first_step(), problem_.longest_step);
+    double h = std::min(step_ > 0.0 ? step_ : first_step(), longest_);
     for (int attempt = 0; attempt < max_attempts; ++attempt) {
       const bool last = from_ + 1.001 * h >= stop_;
       if (last) h = stop_ - from_;
@@ -320,7 +321,7 @@ class OwnIntegrator : public Integrator {
   std::vector<bool> found_;
   bool at_root_ = false;
   std::vector<int> directions_;
-  double t_ = 0.0, from_ = 0.0, stop_ = 0.0, horizon_ = 0.0, step_ = 0.0, length_ = 0.0;
+  double t_ = 0.0, from_ = 0.0, stop_ = 0.0, horizon_ = 0.0, longest_ = 0.0, step_ = 0.0, length_ = 0.0;
   State y_{}, start_{}, dense_{};
   solver::StepResult<System> kept_{};  ///< of the step to a time from its start, where a root was located
   double kept_at_ = -1.0;

@@ -86,6 +86,7 @@ Integrator& StartUpRun::integrator() {
 }
 
 void StartUpRun::pass(double until) {
+  constexpr long steps_per_event = 16;  // that it takes to locate one and to go on from there
   switch (pass_piece(model_, until, *this, [this]() -> Integrator& { return integrator(); })) {
     case PieceOutcome::not_started: return give_up({.kind = Evidence::integrator_not_started});
     case PieceOutcome::failed:
@@ -97,6 +98,7 @@ void StartUpRun::pass(double until) {
       return give_up({.kind = Evidence::integrator_failed,
                       .angle = model_.direct ? now_.moving.angle : wrap_angle(now_.moving.angle),
                       .time = now_.t});
+    case PieceOutcome::event: spent_ += steps_per_event; return;
     default: return;
   }
 }
@@ -116,9 +118,37 @@ bool StartUpRun::happened(const TimeModel&, Kind kind) {
   return done_;
 }
 
+void StartUpRun::cycle_begins() {
+  last_cycle_steps_ = result_.steps - cycle_from_step_;
+  cycle_from_step_ = result_.steps;
+}
+
+/// Ten times tighter steps are less than twice as many. Where there are far more of them, they follow the rounding of
+/// what a small inductance divides.
+void StartUpRun::loosen_where_rounding_shows() {
+  constexpr long far_more = 5;
+  if (!stiff_ || last_cycle_steps_ == 0 || relative_tolerance_ > 1e-10) return;
+  if (result_.steps - cycle_from_step_ <= far_more * last_cycle_steps_) return;
+  relative_tolerance_ = tightest_ = 10.0 * relative_tolerance_;
+  cycle_from_step_ = result_.steps;
+}
+
+/// Steps so short that no cycle comes to its end.
+bool StartUpRun::stands_still() {
+  constexpr long most_steps = 400000;  // within the time of a cycle
+  if (now_.t - scale_from_time_ >= model_.time_scale) {
+    scale_from_time_ = now_.t;
+    scale_from_step_ = result_.steps;
+  }
+  return result_.steps - scale_from_step_ > most_steps;
+}
+
 bool StartUpRun::steps_spent() {
   ++result_.steps;
-  if (result_.steps > options_.max_steps) give_up({.kind = Evidence::out_of_steps, .steps = options_.max_steps});
+  ++spent_;
+  loosen_where_rounding_shows();
+  if (spent_ > options_.max_steps) give_up({.kind = Evidence::out_of_steps, .steps = options_.max_steps});
+  else if (stands_still()) give_up({.kind = Evidence::out_of_steps, .steps = result_.steps});
   else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) give_up({.kind = Evidence::cancelled});
   return done_;
 }

@@ -86,6 +86,7 @@ class StartUpRun {
   virtual void give_up(StatusEvidence why) = 0;
   /// True, having given up, where steps are spent or it was cancelled.
   bool steps_spent();
+  long spent() const { return spent_; }  ///< of the steps allowed: those taken, and what events took beside them
 
   void take_stiff();
   void begin_measuring();
@@ -104,6 +105,7 @@ class StartUpRun {
   void event(Kind kind) { result_.events.push_back({now_.t, now_.moving.angle, kind}); }
   /// The time after which wings that pitch, and the current, no longer shake a shaft that stands from now on [s].
   double shaken_until() const;
+  void cycle_begins();
   void decide(FlappingStatus status) { done_ = result_.settled = true, result_.status = status; }
 
   TransientOptions options_;
@@ -124,7 +126,13 @@ class StartUpRun {
 
  private:
   Integrator& integrator();
+  void loosen_where_rounding_shows();
+  bool stands_still();
 
+  long spent_ = 0;
+  double scale_from_time_ = 0.0;
+  long scale_from_step_ = 0;
+  long cycle_from_step_ = 0, last_cycle_steps_ = 0;
   double quadrature_scale_[quadrature_count] = {};
   std::unique_ptr<Integrator> plain_, with_quadratures_;
   double variation_ = 0.0, energy_mark_ = 0.0, motor_mark_ = 0.0;

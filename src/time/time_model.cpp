@@ -336,7 +336,8 @@ void TimeModel::tolerated(double relative, const double* y, double* errors) cons
 
 double TimeModel::longest_step() const {
   // Of a shaft that stands, no slip may hide within a step.
-  return direct && now.stuck ? time_scale / 64.0 : longest_moving_step();
+  const bool slips = now.stuck && supply.type == SupplyType::sine;
+  return slips ? std::min(drive_period / 64.0, longest_moving_step()) : longest_moving_step();
 }
 
 double TimeModel::longest_moving_step() const { return time_scale / (direct && (wings_pitch || further) ? 16.0 : 4.0); }

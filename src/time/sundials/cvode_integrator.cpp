@@ -63,11 +63,13 @@ class Cvode : public Integrator {
 
   double* state() override { return N_VGetArrayPointer(y_); }
 
-  bool restart(double t, int* directions, double horizon, double stop) override {
+  bool restart(double t, int* directions, double horizon, double stop, double longest) override {
     bool good = CVodeReInit(memory_, t, y_) == CV_SUCCESS;
     if (problem_.roots > 0) good = good && CVodeSetRootDirection(memory_, directions) == CV_SUCCESS;
     time_ = t;
     horizon_ = horizon;
+    // CVODE looks at the root functions at the ends of steps alone; 0: as long as may be.
+    good = good && CVodeSetMaxStep(memory_, std::isfinite(longest) ? longest / 8.0 : 0.0) == CV_SUCCESS;
     return good && CVodeSetStopTime(memory_, stop) == CV_SUCCESS;
   }
 
