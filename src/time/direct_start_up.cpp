@@ -96,7 +96,6 @@ void DirectStartUp::skip_ahead(double change) {
   if (!free || skips_fail_) return limit_.clear();
   limit_.add(scaled_state());
   const std::size_t since = changes_.size() - skipped_at_;
-  if (since < model_.indices.count + 3) return;
   const bool again = skipped_at_ > 0;
   const double rate = since < 3 * watched ? 1.0 : lasting_rate();
   if (!again && !(rate < 1.0)) return;
@@ -130,10 +129,10 @@ void DirectStartUp::skip_ahead(double change) {
   limit_.clear();
 }
 
-/// True where the first period after a skip did not change less than the one before it: back to before it, for good
+/// True where the first period after a skip did not change far less than the one before it: back to before it, for good
 /// where that was the first.
 bool DirectStartUp::skip_failed(double change) {
-  if (skipped_at_ == 0 || changes_.size() != skipped_at_ + 1 || change < 0.5 * change_before_skip_) return false;
+  if (skipped_at_ == 0 || changes_.size() != skipped_at_ + 1 || change < 0.1 * change_before_skip_) return false;
   const double t = now_.t, loss = now_.impact_loss;
   const CycleIntegrals<double> impulses = now_.impulses;
   now_ = before_skip_;
@@ -176,7 +175,10 @@ void DirectStartUp::period_done() {
   }
   before_ = y;
   changes_.push_back(change);
-  if (skip_failed(change)) return;
+  if (skip_failed(change)) {
+    if (model_.measuring) begin_measuring();
+    return;
+  }
   const std::size_t n = changes_.size(), known = n - skipped_at_;
   double rate = 1.0;
   if (known > contraction_periods + 1) {

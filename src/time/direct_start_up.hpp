@@ -43,7 +43,7 @@ class DirectStartUp : public StartUpRun {
   double bent() const { return now_.moving.angle - model_.vehicle.spring.rest_angle; }
 
   bool stands_ = false;  ///< when the last piece began
-  double swing_ = 0.0;  ///< largest |bent()| of this period at the ends of steps
+  double swing_ = 0.0;   ///< largest |bent()| of this period at the ends of steps
   std::vector<double> swings_;
   double stroke_before_ = 0.0;
   double travel_[2] = {}, last_travel_ = infinity;  ///< of this period: backwards, forwards; the longer of the last
