@@ -125,7 +125,7 @@ void CrankStartUp::cycle_measured(double rate) {
   const EnergyAudit audit = energy_audit(*result_.metrics);
   // Slow contraction leaves a cycle that does not quite return: what the vehicle stores meanwhile is no error of it.
   const double stored = (model_.stored_energy() - stored_mark_) / (now_.t - measured_from_);
-  const bool balances = closes(audit, tolerance, stored + load_power());
+  const bool balances = closes(audit, tolerance, stored + load_power(), blocked_input(model_.vehicle));
   if ((closed && agree) || rounding) {
     // Where cycles were skipped, blocks of them may have shown what fades sooner than the speed does, of which the
     // motor alone takes little away.
@@ -301,7 +301,7 @@ bool CrankStartUp::cycle_done_averaging() {
     take_cycles(int(window));
     const EnergyAudit audit = energy_audit(*result_.metrics);
     const double stored = (model_.stored_energy() - stored_mark_) / (now_.t - measured_from_);
-    if (closes(audit, options_.tolerance, stored + load_power())) {
+    if (closes(audit, options_.tolerance, stored + load_power(), blocked_input(model_.vehicle))) {
       flap();
     } else if (relative_tolerance_ > tightest_) {
       relative_tolerance_ = std::max(tightest_, relative_tolerance_ / 10.0);

@@ -7,7 +7,7 @@
 namespace wingbeat::detail {
 namespace {
 
-constexpr double farthest_skip = 1.0;    // of the state or its typical size
+constexpr double farthest_skip = 1.0;  // of the state or its typical size
 constexpr int most_failed_skips = 4;
 constexpr double nearly_settled = 1e-4;  // off the orbit, where the steps allowed end before the tolerance is reached
 constexpr std::size_t watched = 16;      // periods over which changes are compared before any is skipped
@@ -52,8 +52,8 @@ void DirectStartUp::settle(double closure, double change) {
   if (pitches(model_.vehicle)) pitching_.add_to(result_.evidence, model_);
 }
 
-/// Of swings that are steady from period `first` on: how many periods a skip just before has left out in which they would
-/// not have been, had they gone on to settle as they did before it.
+/// Of swings that are steady from period `first` on: how many periods a skip just before has left out in which they
+/// would not have been, had they gone on to settle as they did before it.
 double DirectStartUp::periods_skipped(std::size_t first) const {
   constexpr std::size_t half = 24;
   if (skipped_from_ < 2 * half || first + 1 < skipped_from_ || first > skipped_from_ + 1) return 0.0;
@@ -88,11 +88,12 @@ double DirectStartUp::lasting_rate() const {
   return std::pow(largest[0] / largest[2], 1.0 / double(2 * watched));
 }
 
-/// Goes on from where periods settle, where they have approached that linearly for long enough: a wing that little damps
-/// takes thousands of them.
+/// Goes on from where periods settle, where they have approached that linearly for long enough: a wing that little
+/// damps takes thousands of them.
 void DirectStartUp::skip_ahead(double change) {
-  const bool free = !now_.stuck && !now_.held && !options_.record &&
-                    (model_.vehicle.spring.stiffness > 0.0 || is_given(model_.vehicle.piezo));
+  const Vehicle<double>& v = model_.vehicle;
+  const bool held = now_.held && !is_clamped(v.pitch.hinge), returns = v.spring.stiffness > 0.0 || is_given(v.piezo);
+  const bool free = !now_.stuck && !held && returns && !options_.record;
   if (!free || skips_fail_) return limit_.clear();
   limit_.add(scaled_state());
   const std::size_t since = changes_.size() - skipped_at_;
@@ -119,7 +120,7 @@ void DirectStartUp::skip_ahead(double change) {
   std::array<double, max_unknowns> y = model_.coordinates_now();
   const std::array<double, max_unknowns> scale = model_.typical();
   for (std::size_t n = 0; n < here.size(); ++n) y[n] = (*there)[n] * scale[n];
-  const PitchHinge<double>& hinge = model_.vehicle.pitch.hinge;
+  const PitchHinge<double>& hinge = v.pitch.hinge;
   model_.TimeModel::set(now_.t, y.data());  // no integrals behind them
   if (model_.indices.pitching) {
     now_.moving.pitch_angle = std::clamp(now_.moving.pitch_angle, hinge.stop_low, hinge.stop_high);
@@ -200,7 +201,7 @@ void DirectStartUp::period_done() {
     last_apart_ = std::max(last_off_, apart);
     const bool agree =
         before && (tightest || relative_tolerance_ < 0.2 * measured_with_) && apart < 0.3 * options_.tolerance;
-    periods_at_tightest_ += tightest && change < 10.0 * noise;
+    periods_at_tightest_ += tightest && change < std::max(10.0 * noise, 1e-3 * options_.tolerance);
     const EnergyAudit audit = energy_audit(*result_.metrics);
     const bool balances = closes(audit, options_.tolerance);
     const bool settled = ((close || change < noise) && agree) || periods_at_tightest_ > 40;

@@ -58,6 +58,10 @@ TEST(EnergyAudit, CountsAsClosedUpToTenTimesTheTolerance) {
   EXPECT_TRUE(closes(a, 1.01e-7));
   EXPECT_FALSE(closes(a, 0.99e-7));
   EXPECT_TRUE(closes(a, 1e-9, 1e-6));  // the vehicle stores the rest
+  const EnergyAudit idle{1e-13, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1e-13};
+  EXPECT_FALSE(closes(idle, 1e-6));
+  EXPECT_TRUE(closes(idle, 1e-6, 0.0, 1e-2));  // ten times the rounding of what the blocked motor takes
+  EXPECT_FALSE(closes(idle, 1e-6, 0.0, 1e-4));
   a.imbalance = absent;
   EXPECT_FALSE(closes(a, 1.0));
 }

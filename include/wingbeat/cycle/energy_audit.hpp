@@ -47,15 +47,18 @@ inline EnergyAudit energy_audit(const Metrics<double>& m) {
 }
 
 /// Up to this imbalance [W] the balance of a solution to the relative `tolerance` counts as closed. What is beyond is
-/// no solution: ten times the tolerance, or what rounding may leave, of the input or of what the formulation gives.
-inline double largest_imbalance(const EnergyAudit& a, double tolerance) {
+/// no solution: ten times the tolerance, or what rounding may leave, of the input or of what the formulation gives; or
+/// what rounding may leave of `blocked`, beside which an idle motor without losses takes nothing.
+inline double largest_imbalance(const EnergyAudit& a, double tolerance, double blocked = 0.0) {
   constexpr double rounding = 1e-11;
-  return 10.0 * std::max(tolerance, rounding) * std::max(std::abs(a.electrical), std::abs(a.residual));
+  return 10.0 * std::max(std::max(tolerance, rounding) * std::max(std::abs(a.electrical), std::abs(a.residual)),
+                         rounding * blocked);
 }
 
 /// `stored`: by how much what the vehicle stores grows on the average [W], where it does not return to its start.
-inline bool closes(const EnergyAudit& a, double tolerance, double stored = 0.0) {
-  return std::abs(a.imbalance - stored) <= largest_imbalance(a, tolerance);
+/// `blocked`: what its motors take where they stand [W], see blocked_input().
+inline bool closes(const EnergyAudit& a, double tolerance, double stored = 0.0, double blocked = 0.0) {
+  return std::abs(a.imbalance - stored) <= largest_imbalance(a, tolerance, blocked);
 }
 
 }  // namespace wingbeat

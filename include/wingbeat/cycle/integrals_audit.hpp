@@ -14,6 +14,11 @@ double load_work(const V& v) {
   return drive_of(v).rotates ? two_pi * v.load_torque : 0.0;
 }
 
+/// What a blocked motor takes, \f$V^2 / R\f$ [W]; nothing of a piezo, which does not idle.
+inline double blocked_input(const Vehicle<double>& v) {
+  return is_given(v.piezo) ? 0.0 : square(v.voltage) / circuit_resistance(v);
+}
+
 /// Of a cycle's integrals, `hinge_work` [J] being what hinges and stops take.
 inline EnergyAudit energy_audit(const Vehicle<double>& v, const CycleIntegrals<double>& integrals, double hinge_work) {
   const double f = 1.0 / integrals[std::size_t(Integral::time)];

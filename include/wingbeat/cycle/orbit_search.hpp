@@ -208,7 +208,7 @@ class OrbitSearch {
     summary_.status = solver::PeriodicStatus::unbalanced;
   }
 
-  bool balances() const { return closes(audit(), options_.get().tolerance); }
+  bool balances() const { return closes(audit(), options_.get().tolerance, 0.0, blocked_input(system_.vehicle)); }
   EnergyAudit audit() const {
     double hinge_work = 0.0;
     if constexpr (System::on_hinges) {
