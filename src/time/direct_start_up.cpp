@@ -53,20 +53,21 @@ void DirectStartUp::settle(double closure, double change) {
 }
 
 /// Of swings that are steady from period `first` on: how many periods a skip just before has left out in which they
-/// would not have been, had they gone on to settle as they did before it.
+/// would not have been, had they gone on as the recurrence says by which it skipped.
 double DirectStartUp::periods_skipped(std::size_t first) const {
-  constexpr std::size_t half = 24;
-  if (skipped_from_ < 2 * half || first + 1 < skipped_from_ || first > skipped_from_ + 1) return 0.0;
-  const auto away = [&](std::size_t n) { return std::abs(swings_[n] / swings_.back() - 1.0); };
-  const auto farthest = [&](std::size_t end) {
-    std::size_t at = end - half;
-    for (std::size_t n = at; n < end; ++n) at = away(n) > away(at) ? n : at;
-    return at;
-  };
-  const std::size_t late = farthest(skipped_from_), early = farthest(skipped_from_ - half);
-  if (!(away(late) > 1e-2 && away(late) < away(early))) return 0.0;
-  const double decay = std::log(away(early) / away(late)) / double(late - early);
-  return std::max(0.0, double(late) + std::log(away(late) / 1e-2) / decay - double(first));
+  constexpr std::size_t most = 20000;
+  const std::size_t modes = recurrence_.size();
+  if (skipped_from_ <= modes || first + 1 < skipped_from_) return 0.0;
+  std::vector<double> away;  // from the last swing, relative
+  for (std::size_t n = skipped_from_ - modes; n < skipped_from_; ++n) away.push_back(swings_[n] / swings_.back() - 1.0);
+  std::size_t last = 0;
+  for (std::size_t n = modes; n < most; ++n) {
+    double next = 0.0;
+    for (std::size_t i = 0; i < modes; ++i) next -= recurrence_[i] * away[n - modes + i];
+    away.push_back(next);
+    if (std::abs(next) > 1e-2) last = n + 1 - modes;
+  }
+  return std::max(0.0, double(skipped_from_ + last) - double(first));
 }
 
 std::vector<double> DirectStartUp::scaled_state() const {
@@ -100,12 +101,12 @@ void DirectStartUp::skip_ahead(double change) {
   const bool again = skipped_at_ > 0;
   const double rate = since < 3 * watched ? 1.0 : lasting_rate();
   if (!again && !(rate < 1.0)) return;
-  const std::optional<std::vector<double>> there = limit_.limit();
+  const auto there = limit_.limit();
   if (!there) return;
   const std::vector<double> here = scaled_state();
   double way = 0.0, size = 1.0;
   for (std::size_t n = 0; n < here.size(); ++n) {
-    way = std::max(way, std::abs((*there)[n] - here[n]));
+    way = std::max(way, std::abs(there->state[n] - here[n]));
     size = std::max(size, std::abs(here[n]));
   }
   // Beyond what the changes so far would add up to, they are not understood.
@@ -116,10 +117,14 @@ void DirectStartUp::skip_ahead(double change) {
   change_before_skip_ = change;
   last_way_ = way;
   skipped_at_ = changes_.size();
-  if (!again) skipped_from_ = swings_.size(), first_skip_ = skipped_at_;
+  if (!again) {
+    skipped_from_ = swings_.size();
+    first_skip_ = skipped_at_;
+    recurrence_ = there->recurrence;
+  }
   std::array<double, max_unknowns> y = model_.coordinates_now();
   const std::array<double, max_unknowns> scale = model_.typical();
-  for (std::size_t n = 0; n < here.size(); ++n) y[n] = (*there)[n] * scale[n];
+  for (std::size_t n = 0; n < here.size(); ++n) y[n] = there->state[n] * scale[n];
   const PitchHinge<double>& hinge = v.pitch.hinge;
   model_.TimeModel::set(now_.t, y.data());  // no integrals behind them
   if (model_.indices.pitching) {

@@ -56,6 +56,7 @@ class DirectStartUp : public StartUpRun {
   double change_before_skip_ = 0.0, last_way_ = 0.0;
   std::size_t skipped_at_ = 0, first_skip_ = 0;  ///< changes_ before the last skip and the first; 0: none
   std::size_t skipped_from_ = 0;                 ///< swings_ before the first
+  std::vector<double> recurrence_;               ///< by which that went
   int failed_skips_ = 0;
   bool skips_fail_ = false;
 };

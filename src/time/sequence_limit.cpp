@@ -26,7 +26,7 @@ void SequenceLimit::add(std::vector<double> state) {
   if (states_.size() > kept) states_.pop_front();
 }
 
-std::optional<std::vector<double>> SequenceLimit::limit() const {
+std::optional<SequenceLimit::Limit> SequenceLimit::limit() const {
   constexpr double unexplained = 3e-2;
   if (states_.empty() || states_.size() < states_known(states_.back().size())) return std::nullopt;
   const Eigen::Index size = Eigen::Index(states_.back().size()), last = Eigen::Index(states_.size()) - 1;
@@ -44,7 +44,7 @@ std::optional<std::vector<double>> SequenceLimit::limit() const {
     if (!((later + earlier * c).norm() <= unexplained * later.norm())) continue;
     const Eigen::VectorXd limit = (x.col(last) + x.middleCols(last - modes, modes) * c) / (1.0 + c.sum());
     if (!limit.allFinite() || !fade(c)) return std::nullopt;
-    return std::vector<double>(limit.begin(), limit.end());
+    return Limit{{limit.begin(), limit.end()}, {c.begin(), c.end()}};
   }
   return std::nullopt;
 }

@@ -16,12 +16,17 @@ namespace wingbeat::detail {
 /// where all known changes determine the c, and the roots of their polynomial are the eigenvalues of these modes.
 class SequenceLimit {
  public:
+  struct Limit {
+    std::vector<double> state;
+    std::vector<double> recurrence;  ///< c_0, c_1, ...: of the changes, and of all deviations from the limit
+  };
+
   /// One more state; all are of one size, each number of it relative to what is typical of it.
   void add(std::vector<double> state);
   void clear() { states_.clear(); }
   /// The limit by as few modes as leave no more than 3 % of the changes unexplained; none where no number of
   /// modes does, where one of them does not fade, or before three states for each number and the limit are known.
-  std::optional<std::vector<double>> limit() const;
+  std::optional<Limit> limit() const;
 
  private:
   std::deque<std::vector<double>> states_;

@@ -34,9 +34,12 @@ TEST(SequenceLimit, IsTheFixedPointOfALinearMap) {
   }
   const auto limit = sequence.limit();
   ASSERT_TRUE(limit);
-  EXPECT_NEAR((*limit)[0], 1.0, 1e-10);
-  EXPECT_NEAR((*limit)[1], -2.0, 1e-10);
-  EXPECT_NEAR((*limit)[2], 3.0, 1e-10);
+  EXPECT_NEAR(limit->state[0], 1.0, 1e-10);
+  EXPECT_NEAR(limit->state[1], -2.0, 1e-10);
+  EXPECT_NEAR(limit->state[2], 3.0, 1e-10);
+  ASSERT_EQ(limit->recurrence.size(), 3u);  // z^3 + c_2 z^2 + c_1 z + c_0 of the three eigenvalues
+  EXPECT_NEAR(limit->recurrence[0], 0.2 * 0.9995 * 0.9995, 1e-10);
+  EXPECT_NEAR(limit->recurrence[2], 0.2 - 2.0 * 0.9995 * std::cos(0.3), 1e-10);
   sequence.clear();
   EXPECT_FALSE(sequence.limit());
 }
@@ -73,7 +76,8 @@ TEST(SkippedPeriods, LeadToWhereAllOfThemLead) {
     periods += skipped.cycles, all_periods += whole.cycles;
     ASSERT_TRUE(skipped.metrics && whole.metrics) << which;
     EXPECT_FALSE(whole.evidence.extrapolated) << which;
-    for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::stroke_amplitude, Metric::lift_peak}) {
+    for (const Metric m :
+         {Metric::frequency, Metric::power_electrical, Metric::stroke_amplitude, Metric::current_rms}) {
       const double scale = error_scale(*whole.metrics, m);
       EXPECT_NEAR((*skipped.metrics)[m], (*whole.metrics)[m], 3e-6 * scale) << which << " " << metric_info(m).key;
     }
