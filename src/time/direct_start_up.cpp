@@ -8,7 +8,7 @@ namespace wingbeat::detail {
 namespace {
 
 constexpr double farthest_skip = 1.0;  // of the state or its typical size
-constexpr int most_failed_skips = 4;
+constexpr int max_failed_skips = 4;
 constexpr double nearly_settled = 1e-4;  // off the orbit, where the steps allowed end before the tolerance is reached
 constexpr std::size_t watched = 16;      // periods over which changes are compared before any is skipped
 constexpr int contraction_periods = 4;   // over which the contraction is taken: complex multipliers make it uneven
@@ -55,13 +55,13 @@ void DirectStartUp::settle(double closure, double change) {
 /// Of swings that are steady from period `first` on: how many periods a skip just before has left out in which they
 /// would not have been, had they gone on as the recurrence says by which it skipped.
 double DirectStartUp::periods_skipped(std::size_t first) const {
-  constexpr std::size_t most = 20000;
+  constexpr std::size_t max_periods = 20000;
   const std::size_t modes = recurrence_.size();
   if (skipped_from_ <= modes || first + 1 < skipped_from_) return 0.0;
   std::vector<double> away;  // from the last swing, relative
   for (std::size_t n = skipped_from_ - modes; n < skipped_from_; ++n) away.push_back(swings_[n] / swings_.back() - 1.0);
   std::size_t last = 0;
-  for (std::size_t n = modes; n < most; ++n) {
+  for (std::size_t n = modes; n < max_periods; ++n) {
     double next = 0.0;
     for (std::size_t i = 0; i < modes; ++i) next -= recurrence_[i] * away[n - modes + i];
     away.push_back(next);
@@ -89,7 +89,7 @@ double DirectStartUp::lasting_rate() const {
   return std::pow(largest[0] / largest[2], 1.0 / double(2 * watched));
 }
 
-/// Goes on from where periods settle, where they have approached that linearly for long enough: a wing that little
+/// Continues from where periods settle, where they have approached that linearly for long enough: a wing that little
 /// damps takes thousands of them.
 void DirectStartUp::skip_ahead(double change) {
   const Vehicle<double>& v = model_.vehicle;
@@ -146,7 +146,7 @@ bool DirectStartUp::skip_failed(double change) {
   before_ = model_.coordinates_now();
   changes_.back() = change_before_skip_;
   swing_ = std::abs(bent());
-  skips_fail_ = skipped_at_ == first_skip_ || ++failed_skips_ == most_failed_skips;
+  skips_fail_ = skipped_at_ == first_skip_ || ++failed_skips_ == max_failed_skips;
   if (skipped_at_ == first_skip_) skipped_from_ = 0;
   limit_.clear();
   return true;

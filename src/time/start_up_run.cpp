@@ -86,7 +86,7 @@ Integrator& StartUpRun::integrator() {
 }
 
 void StartUpRun::pass(double until) {
-  constexpr long steps_per_event = 16;  // that it takes to locate one and to go on from there
+  constexpr long steps_per_event = 16;  // that it takes to locate one and to restart from it
   switch (pass_piece(model_, until, *this, [this]() -> Integrator& { return integrator(); })) {
     case PieceOutcome::not_started: return give_up({.kind = Evidence::integrator_not_started});
     case PieceOutcome::failed:
@@ -135,12 +135,12 @@ void StartUpRun::loosen_where_rounding_shows() {
 
 /// Steps so short that no cycle comes to its end.
 bool StartUpRun::stands_still() {
-  constexpr long most_steps = 400000;  // within the time of a cycle
+  constexpr long max_steps = 400000;  // within the time of a cycle
   if (now_.t - scale_from_time_ >= model_.time_scale) {
     scale_from_time_ = now_.t;
     scale_from_step_ = result_.steps;
   }
-  return result_.steps - scale_from_step_ > most_steps;
+  return result_.steps - scale_from_step_ > max_steps;
 }
 
 bool StartUpRun::steps_spent() {

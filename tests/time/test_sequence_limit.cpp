@@ -1,4 +1,4 @@
-// Limits of sequences, and direct drives that go on from where their periods settle.
+// Limits of sequences, and direct drives whose simulation skips to where their periods settle.
 #include <gtest/gtest.h>
 
 #include <cmath>

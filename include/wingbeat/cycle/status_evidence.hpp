@@ -29,8 +29,8 @@ struct StatusEvidence {
     settled_cycles,   ///< frequency, time (steady from then on), cycles, change, repeats_after, extrapolated,
                       ///< over_rotation; accuracy where they are further from their limit than asked for
     averaged_cycles,  ///< frequency, cycles, change (largest deviation of a duration from their mean), incommensurate
-    settled_periods,  ///< of a direct drive: frequency, time, cycles, change, over_rotation; accuracy and steps where
-                      ///< those ran out
+    settled_periods,  ///< of a direct drive: frequency, time, cycles, change, extrapolated, over_rotation; accuracy
+                      ///< and steps where those ran out
 
     // Stalled, by statics
     weak_motor,   ///< torque (the stall torque) does not exceed friction_torque

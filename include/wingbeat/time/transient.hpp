@@ -28,15 +28,15 @@ struct TransientOptions {
   double tolerance = 1e-6;  ///< wanted relative accuracy of the metrics of steady flapping [1], 1e-11 to 1e-2
   double max_time = 0.0;    ///< give up after this time [s]; 0: chosen from the vehicle's own time scales
   int max_cycles = 5000;    ///< give up after this many revolutions
-  /// Give up after this many integration steps, a microsecond or two each: weakly damped drives with small inductances
-  /// take more than a million.
+  /// Give up after this many integration steps, a few microseconds each; an event counts as 16, and 400,000 within the
+  /// time of a cycle are enough to give up as well.
   long max_steps = 2000000;
 
   /// How everything is at the start; a negative crank speed turns backwards, without inductance the current follows
   /// from the voltage instead. Without angle and speed a direct drive starts where its springs are at rest.
   Coordinates<double> start = {};
 
-  bool record = false;           ///< keep samples (and events of supply switching)
+  bool record = false;           ///< keep samples (and events of supply switching); nothing is skipped then
   double record_interval = 0.0;  ///< time between samples [s]; 0: every step of the integrator
 
   std::optional<Supply<double>> supply;  ///< replaces the constant vehicle.voltage; not for a direct drive
