@@ -98,7 +98,10 @@ void StartUpRun::pass(double until) {
       return give_up({.kind = Evidence::integrator_failed,
                       .angle = model_.direct ? now_.moving.angle : wrap_angle(now_.moving.angle),
                       .time = now_.t});
-    case PieceOutcome::event: spent_ += steps_per_event; return;
+    case PieceOutcome::event:
+      // Under a switched supply the rod force turns over with the ripple of the current now and then.
+      if (model_.supply.type != SupplyType::pwm) spent_ += steps_per_event;
+      return;
     default: return;
   }
 }
