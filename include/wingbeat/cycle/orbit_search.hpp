@@ -21,7 +21,7 @@ namespace wingbeat::detail {
 
 /// What one vehicle's searches may take together, over all starts. It bounds the processor time: a step of the explicit
 /// pair takes about a microsecond, of wings that pitch about three.
-constexpr long orbit_search_work = 1000000, pitching_search_work = 100000;
+constexpr long orbit_search_work = 1000000, pitching_search_work = 300000;
 inline long search_work(const Vehicle<double>& vehicle) {
   return pitches(vehicle) || is_of_further_kind(vehicle) ? pitching_search_work : orbit_search_work;
 }
