@@ -84,9 +84,8 @@ std::string describe_flapping(const StatusEvidence& e) {
       std::string text =
           format("flaps steadily at the supply's %.6g Hz from %.4g s on; after %d periods they repeat to %.1g%s",
                  e.frequency, e.time, e.cycles, e.change, e.extrapolated ? " (slow convergence, extrapolated)" : "");
-      if (e.steps > 0) {
-        text += format(", metrics to about %.1g: the %ld integration steps allowed are used up", e.accuracy, e.steps);
-      }
+      if (std::isfinite(e.accuracy)) text += format(", metrics to about %.1g", e.accuracy);
+      if (e.steps > 0) text += format(": the %ld integration steps allowed are used up", e.steps);
       return text + describe_pitching(e);
     }
     default: return "";

@@ -12,8 +12,8 @@ constexpr int max_solutions = 60;
 /// Secants settle within five or six solutions; where they do not, the interval known is halved.
 constexpr int patience = 12;
 constexpr int relaxed_after = 16;
-/// So close is the temperature known at which a vehicle stops [K]: near to it start-ups settle ever more slowly.
-constexpr double stop_width = 0.1;
+/// So close is the temperature known at which a vehicle stops [K].
+constexpr double stop_width = 0.01;
 
 MotorTemperatures<double> middle(const MotorTemperatures<double>& a, const MotorTemperatures<double>& b) {
   return {0.5 * (a.winding + b.winding), 0.5 * (a.casing + b.casing)};

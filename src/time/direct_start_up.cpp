@@ -4,13 +4,15 @@
 #include <cmath>
 #include <utility>
 
+#include "wingbeat/cycle/integrals_audit.hpp"
+
 namespace wingbeat::detail {
 namespace {
 
 constexpr double farthest_skip = 1.0;  // of the state or its typical size
 constexpr int max_failed_skips = 4;
 constexpr double nearly_settled = 1e-4;  // off the orbit, where the steps allowed end before the tolerance is reached
-constexpr std::size_t watched = 16;      // periods over which changes are compared before any is skipped
+constexpr std::size_t window = 16;       // periods over which changes are compared before any is skipped
 constexpr int contraction_periods = 4;   // over which the contraction is taken: complex multipliers make it uneven
 
 }  // namespace
@@ -70,6 +72,11 @@ double DirectStartUp::periods_skipped(std::size_t first) const {
   return std::max(0.0, double(skipped_from_ + last) - double(first));
 }
 
+/// Without springs nothing returns the shaft to any angle.
+bool DirectStartUp::shaft_returns() const {
+  return model_.vehicle.spring.stiffness > 0.0 || is_given(model_.vehicle.piezo);
+}
+
 std::vector<double> DirectStartUp::scaled_state() const {
   const std::array<double, max_unknowns> y = model_.coordinates_now(), scale = model_.typical();
   std::vector<double> x(model_.indices.count);
@@ -79,27 +86,27 @@ std::vector<double> DirectStartUp::scaled_state() const {
 
 /// The share of a change that the next period has, where changes become smaller from window to window; else 1.
 double DirectStartUp::lasting_rate() const {
-  if (changes_.size() < 3 * watched) return 1.0;
+  if (changes_.size() < 3 * window) return 1.0;
   double largest[3];
-  for (std::size_t window = 0; window < 3; ++window) {
-    const auto end = changes_.end() - std::ptrdiff_t(window * watched);
-    largest[window] = *std::max_element(end - std::ptrdiff_t(watched), end);
+  for (std::size_t back = 0; back < 3; ++back) {
+    const auto end = changes_.end() - std::ptrdiff_t(back * window);
+    largest[back] = *std::max_element(end - std::ptrdiff_t(window), end);
   }
   if (!(largest[0] < largest[1] && largest[1] < largest[2])) return 1.0;
-  return std::pow(largest[0] / largest[2], 1.0 / double(2 * watched));
+  return std::pow(largest[0] / largest[2], 1.0 / double(2 * window));
 }
 
 /// Continues from where periods settle, where they have approached that linearly for long enough: a wing that little
 /// damps takes thousands of them.
 void DirectStartUp::skip_ahead(double change) {
   const Vehicle<double>& v = model_.vehicle;
-  const bool held = now_.held && !is_clamped(v.pitch.hinge), returns = v.spring.stiffness > 0.0 || is_given(v.piezo);
-  const bool free = !now_.stuck && !held && returns && !options_.record;
+  const bool held = now_.held && !is_clamped(v.pitch.hinge);
+  const bool free = !now_.stuck && !held && shaft_returns() && !options_.record;
   if (!free || skips_fail_) return limit_.clear();
   limit_.add(scaled_state());
   const std::size_t since = changes_.size() - skipped_at_;
   const bool again = skipped_at_ > 0;
-  const double rate = since < 3 * watched ? 1.0 : lasting_rate();
+  const double rate = since < 3 * window ? 1.0 : lasting_rate();
   if (!again && !(rate < 1.0)) return;
   const auto there = limit_.limit();
   if (!there) return;
@@ -175,8 +182,7 @@ void DirectStartUp::period_done() {
   const std::array<double, max_unknowns> y = model_.coordinates_now();
   double change = 0.0;
   for (std::size_t n = 0; n < model_.indices.count; ++n) {
-    // Without springs nothing returns the shaft to any angle.
-    if (n == 0 && !(model_.vehicle.spring.stiffness > 0.0) && !is_given(model_.vehicle.piezo)) continue;
+    if (n == 0 && !shaft_returns()) continue;
     change = std::max(change, std::abs(y[n] - before_[n]) / scale[n]);
   }
   before_ = y;
@@ -208,11 +214,12 @@ void DirectStartUp::period_done() {
         before && (tightest || relative_tolerance_ < 0.2 * measured_with_) && apart < 0.3 * options_.tolerance;
     periods_at_tightest_ += tightest && change < std::max(10.0 * noise, 1e-3 * options_.tolerance);
     const EnergyAudit audit = energy_audit(*result_.metrics);
-    const bool balances = closes(audit, options_.tolerance);
+    const bool balances = closes(audit, options_.tolerance, 0.0, blocked_input(model_.vehicle));
     const bool settled = ((close || change < noise) && agree) || periods_at_tightest_ > 40;
     if (settled && !balances && tightest) return give_up_open_balance(audit);
     if (settled && balances) {
       settle(std::min(off, change / (1.0 - std::min(rate, 0.999))), change);
+      if (!agree && last_apart_ > options_.tolerance) result_.evidence.accuracy = last_apart_;
       return;
     }
     last_metrics_ = std::exchange(result_.metrics, std::nullopt);
@@ -237,7 +244,7 @@ bool DirectStartUp::out_of_budget() {
     return last_metrics_ && last_off_ < nearly_settled &&
            closes(energy_audit(*last_metrics_), std::max(options_.tolerance, last_apart_));
   };
-  if (spent() >= options_.max_steps && as_good_as_steps_allow()) {
+  if (result_.steps >= options_.max_steps && as_good_as_steps_allow()) {
     // That it flaps is beyond doubt, its metrics are as good as the steps allowed make them.
     result_.metrics = last_metrics_;
     settle(last_off_, changes_.back());

@@ -30,6 +30,7 @@ class DirectStartUp : public StartUpRun {
   bool creeps_to_rest();
   bool never_repeats() const;
   double periods_skipped(std::size_t first) const;
+  bool shaft_returns() const;
   std::vector<double> scaled_state() const;
   double lasting_rate() const;
   void skip_ahead(double change);

@@ -88,9 +88,9 @@ PieceOutcome pass_piece(Model& model, double until, Watch& watch, const MakeInte
   Integrator& steps = integrator();
   model.unknowns(steps.state());
   auto directions = model.directions();
-  const double horizon = std::min(model.longest_step(), stop - model.now.t);
-  const double longest = model.now.stuck ? model.longest_step() : std::numeric_limits<double>::infinity();
-  if (!steps.restart(model.now.t, directions.data(), horizon, stop, longest)) {
+  const double longest = model.longest_step(), horizon = std::min(longest, stop - model.now.t);
+  const double bound = model.now.stuck ? longest : std::numeric_limits<double>::infinity();
+  if (!steps.restart(model.now.t, directions.data(), horizon, stop, bound)) {
     return PieceOutcome::not_started;
   }
   while (true) {

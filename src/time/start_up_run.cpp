@@ -86,7 +86,6 @@ Integrator& StartUpRun::integrator() {
 }
 
 void StartUpRun::pass(double until) {
-  constexpr long steps_per_event = 16;  // that it takes to locate one and to restart from it
   switch (pass_piece(model_, until, *this, [this]() -> Integrator& { return integrator(); })) {
     case PieceOutcome::not_started: return give_up({.kind = Evidence::integrator_not_started});
     case PieceOutcome::failed:
@@ -98,10 +97,7 @@ void StartUpRun::pass(double until) {
       return give_up({.kind = Evidence::integrator_failed,
                       .angle = model_.direct ? now_.moving.angle : wrap_angle(now_.moving.angle),
                       .time = now_.t});
-    case PieceOutcome::event:
-      // Under a switched supply the rod force turns over with the ripple of the current now and then.
-      if (model_.supply.type != SupplyType::pwm) spent_ += steps_per_event;
-      return;
+    case PieceOutcome::event: ++window_events_; return;
     default: return;
   }
 }
@@ -136,21 +132,22 @@ void StartUpRun::loosen_where_rounding_shows() {
   cycle_from_step_ = result_.steps;
 }
 
-/// Steps so short that no cycle comes to its end.
+/// Steps so short, or events so dense, that no cycle comes to its end.
 bool StartUpRun::stands_still() {
-  constexpr long max_steps = 400000;  // within the time of a cycle
-  if (now_.t - scale_from_time_ >= model_.time_scale) {
-    scale_from_time_ = now_.t;
-    scale_from_step_ = result_.steps;
+  constexpr long max_steps = 400000;    // within the time of a cycle
+  constexpr long steps_per_event = 16;  // that it takes to locate one and to restart from it
+  if (now_.t - window_from_ >= model_.time_scale) {
+    window_from_ = now_.t;
+    window_from_step_ = result_.steps;
+    window_events_ = 0;
   }
-  return result_.steps - scale_from_step_ > max_steps;
+  return result_.steps - window_from_step_ + steps_per_event * window_events_ > max_steps;
 }
 
 bool StartUpRun::steps_spent() {
   ++result_.steps;
-  ++spent_;
   loosen_where_rounding_shows();
-  if (spent_ > options_.max_steps) give_up({.kind = Evidence::out_of_steps, .steps = options_.max_steps});
+  if (result_.steps > options_.max_steps) give_up({.kind = Evidence::out_of_steps, .steps = options_.max_steps});
   else if (stands_still()) give_up({.kind = Evidence::out_of_steps, .steps = result_.steps});
   else if (options_.cancel && result_.steps % 512 == 0 && options_.cancel()) give_up({.kind = Evidence::cancelled});
   return done_;

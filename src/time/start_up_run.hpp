@@ -86,7 +86,6 @@ class StartUpRun {
   virtual void give_up(StatusEvidence why) = 0;
   /// True, having given up, where steps are spent or it was cancelled.
   bool steps_spent();
-  long spent() const { return spent_; }  ///< of the steps allowed: those taken, and what events took beside them
 
   void take_stiff();
   void begin_measuring();
@@ -129,9 +128,8 @@ class StartUpRun {
   void loosen_where_rounding_shows();
   bool stands_still();
 
-  long spent_ = 0;
-  double scale_from_time_ = 0.0;
-  long scale_from_step_ = 0;
+  double window_from_ = 0.0;  ///< a cycle's time that is watched for standing still began there [s]
+  long window_from_step_ = 0, window_events_ = 0;
   long cycle_from_step_ = 0, last_cycle_steps_ = 0;
   double quadrature_scale_[quadrature_count] = {};
   std::unique_ptr<Integrator> plain_, with_quadratures_;

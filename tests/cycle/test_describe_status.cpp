@@ -63,6 +63,11 @@ TEST(DescribeStatus, FlappingInTime) {
   e = {.kind = Evidence::settled_periods, .frequency = 22.0, .time = 0.5, .change = 1e-9, .cycles = 40};
   EXPECT_EQ(describe(e), "flaps steadily at the supply's 22 Hz from 0.5 s on; after 40 periods they repeat to 1e-09");
   e.accuracy = 3e-7;
+  e.extrapolated = true;
+  EXPECT_EQ(describe(e),
+            "flaps steadily at the supply's 22 Hz from 0.5 s on; after 40 periods they repeat to 1e-09 (slow "
+            "convergence, extrapolated), metrics to about 3e-07");
+  e.extrapolated = false;
   e.steps = 3000000;
   EXPECT_EQ(describe(e),
             "flaps steadily at the supply's 22 Hz from 0.5 s on; after 40 periods they repeat to 1e-09, metrics to "

@@ -30,7 +30,7 @@ struct StatusEvidence {
                       ///< over_rotation; accuracy where they are further from their limit than asked for
     averaged_cycles,  ///< frequency, cycles, change (largest deviation of a duration from their mean), incommensurate
     settled_periods,  ///< of a direct drive: frequency, time, cycles, change, extrapolated, over_rotation; accuracy
-                      ///< and steps where those ran out
+                      ///< where it is worse than asked for, and steps where those ran out
 
     // Stalled, by statics
     weak_motor,   ///< torque (the stall torque) does not exceed friction_torque

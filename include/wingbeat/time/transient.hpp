@@ -28,8 +28,8 @@ struct TransientOptions {
   double tolerance = 1e-6;  ///< wanted relative accuracy of the metrics of steady flapping [1], 1e-11 to 1e-2
   double max_time = 0.0;    ///< give up after this time [s]; 0: chosen from the vehicle's own time scales
   int max_cycles = 5000;    ///< give up after this many revolutions
-  /// Give up after this many integration steps, a few microseconds each; an event counts as 16, and 400,000 within the
-  /// time of a cycle are enough to give up as well.
+  /// Give up after this many integration steps, a few microseconds each, or after 400,000 within the time of a cycle,
+  /// of which an event counts as 16.
   long max_steps = 2000000;
 
   /// How everything is at the start; a negative crank speed turns backwards, without inductance the current follows
