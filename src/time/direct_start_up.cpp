@@ -212,14 +212,13 @@ void DirectStartUp::period_done() {
     last_apart_ = std::max(last_off_, apart);
     const bool agree =
         before && (tightest || relative_tolerance_ < 0.2 * measured_with_) && apart < 0.3 * options_.tolerance;
-    periods_at_tightest_ += tightest && change < std::max(10.0 * noise, 1e-3 * options_.tolerance);
+    periods_at_tightest_ += tightest && change < 10.0 * noise;
     const EnergyAudit audit = energy_audit(*result_.metrics);
     const bool balances = closes(audit, options_.tolerance, 0.0, blocked_input(model_.vehicle));
     const bool settled = ((close || change < noise) && agree) || periods_at_tightest_ > 40;
     if (settled && !balances && tightest) return give_up_open_balance(audit);
     if (settled && balances) {
       settle(std::min(off, change / (1.0 - std::min(rate, 0.999))), change);
-      if (!agree && last_apart_ > options_.tolerance) result_.evidence.accuracy = last_apart_;
       return;
     }
     last_metrics_ = std::exchange(result_.metrics, std::nullopt);
