@@ -49,6 +49,7 @@ class StableOrbits {
     std::optional<std::size_t> which = nearest_to(settled);
     if (!which) attempt_near(settled), which = nearest_to(settled);
     if (!which && !System::on_hinges) attempt(settled), which = nearest_to(settled);
+    if (which && orbits_[*which].holds_wings()) hold_where_left(*which, settled);
     return which;
   }
 
@@ -60,10 +61,17 @@ class StableOrbits {
     return reached_from({});
   }
 
-  /// Which of them iterates from a state come to; nothing as above, and where the crank does not turn on.
+  /// Which of them iterates from a state come to; nothing as above, and where the crank does not turn on. One whose
+  /// hinges hold the wings becomes the one on which they are held where these iterates leave them.
   std::optional<std::size_t> reached_from(State here) {
-    constexpr double accuracy = 1e-6;
-    return plain_iterates(here, accuracy, 300);
+    const std::optional<std::size_t> which = plain_iterates(here, hold_wings() ? on_held : usual, 300);
+    if (which && orbits_[*which].holds_wings()) hold_where_left(*which, here);
+    return which;
+  }
+
+  /// Whether on one of them friction of the pitch hinge holds the wings all the time.
+  bool hold_wings() const {
+    return std::any_of(orbits_.begin(), orbits_.end(), [](const auto& orbit) { return orbit.holds_wings(); });
   }
 
   bool empty() const { return orbits_.empty(); }
@@ -87,72 +95,93 @@ class StableOrbits {
 
  private:
   static constexpr double close = 1e-2;  ///< to an orbit: on the way to it
+  /// Of iterates alone: where hinges hold the wings, their errors decide where.
+  static constexpr solver::IterateOptions usual{.tolerance = 1e-6, .max_steps = 2000},
+      on_held{.tolerance = 1e-9, .max_steps = 20000};
+
+  /// The orbit that `search` finds, at most with so many evaluations, and what it was like: of none as well.
+  template <class Search>
+  std::pair<OrbitSearch<System>, bool> found(long max_evaluations, const Search& search) {
+    solver::WorkBudget part = shared_.work.part(max_evaluations);
+    OrbitSearch<System> orbit(system_, options_, part);
+    const bool is_found = search(orbit);
+    shared_.work.used += part.used;
+    iterates_ += orbit.summary().iterates;
+    return {std::move(orbit), is_found};
+  }
 
   template <class Search>
   void keep(const State& guess, long max_evaluations, const Search& search) {
     constexpr double same = 1e-3;  // orbits that are nearer to each other are one
     if (!system_.admissible(guess)) return;
-    solver::WorkBudget part = shared_.work.part(max_evaluations);
-    OrbitSearch<System> orbit(system_, options_, part);
-    const bool found = search(orbit);
-    shared_.work.used += part.used;
-    iterates_ += orbit.summary().iterates;
+    auto [orbit, is_found] = found(max_evaluations, search);
     last_ = orbit.summary();
     last_.iterates = iterates_;
     if (last_.status == solver::PeriodicStatus::unbalanced) imbalance_ = orbit.imbalance();
     if (last_.status == solver::PeriodicStatus::out_of_work && orbit.started() && !unfinished_) {
       unfinished_ = orbit.start();
     }
-    if (!found) return;
-    const bool held = holds_wings(orbit);
+    if (!is_found) return;
+    const bool held = orbit.holds_wings();
     if (springs_return() && !held && !(orbit.multiplier() < 1.0)) {
       unstable_multiplier_ = orbit.multiplier();
       unstable_frequency_ = orbit.frequency();
       return;
     }
     for (OrbitSearch<System>& known : orbits_) {
-      if (held && holds_wings(known)) return;
+      if (held && known.holds_wings()) return;
       if (apart(known.start(), orbit.start(), springs_return() ? 0 : 1) < same) return;
     }
     orbits_.push_back(std::move(orbit));
   }
 
-  /// Whether friction of the pitch hinge holds the wings all the time: they stay at any pitch within its reach, at a
-  /// multiplier of 1, and the orbits of all these are one.
-  bool holds_wings(OrbitSearch<System>& orbit) const {
-    if constexpr (!System::on_hinges) return false;
-    else return has_friction(system_.vehicle.pitch.hinge) && std::abs(orbit.multiplier() - 1.0) < 1e-9;
+  /// Of an orbit whose hinges hold the wings: the one on which they are held where iterates from a state close to it
+  /// leave them.
+  void hold_where_left(std::size_t which, State here) {
+    constexpr double settled = 1e-6;
+    iterate_until(here, on_held, 300, [&](const State& from, const State& to) { return apart(from, to) < settled; });
+    auto [orbit, is_found] = found(all, [&](auto& search) { return search.search_near(here); });
+    if (is_found && orbit.holds_wings()) orbits_[which] = std::move(orbit);
   }
 
   /// Whether plain iterates from a state come to a stable orbit that is known, at less work than to find it once more;
   /// moves the state along them.
   bool leads_to_known(State& y) {
     if (orbits_.empty() || !springs_return()) return false;
-    constexpr double accuracy = 1e-3;
+    constexpr solver::IterateOptions rough{.tolerance = 1e-3, .max_steps = 2000};
     constexpr int fewest = 8, most = 40;
     // As many as leave of the largest distance what counts as close.
     double slowest = 0.0;
     for (OrbitSearch<System>& known : orbits_) slowest = std::max(slowest, known.multiplier());
     const double needed = std::ceil(std::log(close) / std::log(std::min(slowest, 0.99)));
-    return plain_iterates(y, accuracy, int(std::clamp(needed + 2.0, double(fewest), double(most)))).has_value();
+    return plain_iterates(y, rough, int(std::clamp(needed + 2.0, double(fewest), double(most)))).has_value();
   }
 
-  /// Moves a state along at most so many iterates, until it is close to one of the orbits: which.
-  std::optional<std::size_t> plain_iterates(State& y, double accuracy, int max_iterates) {
-    const solver::IterateOptions options{.tolerance = accuracy, .max_steps = 2000};
+  /// Moves a state along iterates until it is close to one of the orbits: which.
+  std::optional<std::size_t> plain_iterates(State& y, const solver::IterateOptions& options, int max_iterates) {
+    std::optional<std::size_t> which;
+    iterate_until(y, options, max_iterates, [&](const State&, const State& end) {
+      which = nearest_to(end);
+      return which.has_value();
+    });
+    return which;
+  }
+
+  /// Moves a state along at most so many iterates, until `done` of the ends of one; not at all where one cannot be
+  /// completed.
+  template <class Done>
+  void iterate_until(State& y, const solver::IterateOptions& options, int max_iterates, const Done& done) {
     solver::Iterate<System> iterate;
     State here = y;
     for (int n = 0; n < max_iterates && !shared_.work.spent() && system_.admissible(here); ++n) {
       solver::run_iterate<false>(system_, here, options, iterate);
       shared_.work.used += long(iterate.steps.size());
       ++iterates_;
-      if (iterate.status != solver::IterateStatus::complete) return std::nullopt;
-      here = iterate.end;
-      const std::optional<std::size_t> which = nearest_to(here);
-      if (which) return which;
+      if (iterate.status != solver::IterateStatus::complete) return;
+      const State from = std::exchange(here, iterate.end);
+      if (done(from, here)) break;
     }
     y = here;
-    return std::nullopt;
   }
 
   std::optional<std::size_t> nearest_to(const State& settled) const {
@@ -202,7 +231,9 @@ SteadyFlapping search_flapping(const Vehicle<double>& vehicle, const SteadyOptio
   result.summary = orbits.last();
 
   std::size_t chosen = 0;
-  const auto unresolved = [&] { return orbits.size() != 1 || drive.in_doubt(orbits) || orbits[0].over_rotates(); };
+  const auto unresolved = [&] {
+    return orbits.size() != 1 || drive.in_doubt(orbits) || orbits[0].over_rotates() || orbits.hold_wings();
+  };
   std::optional<std::size_t> from_rest;
   if constexpr (System::on_hinges && !System::turns) {
     if (start_up && !orbits.empty() && unresolved()) from_rest = orbits.reached_from_rest();
@@ -251,7 +282,11 @@ SteadyFlapping search_flapping(const Vehicle<double>& vehicle, const SteadyOptio
   if (System::on_hinges && !other) shared.orbit.assign(orbit.start().begin(), orbit.start().end());
   result.summary = orbit.summary();
   result.summary.iterates = orbits.iterates();
+  const bool held = orbit.holds_wings();
   orbit.fill(result);
+  if (held && std::isfinite(result.metrics[Metric::floquet_multiplier_max])) {
+    result.metrics[Metric::floquet_multiplier_max] = 1.0;  // plain iterates that have closed it do not see it
+  }
   if (!orbits.springs_return()) result.metrics[Metric::floquet_multiplier_max] = absent;
   result.status = FlappingStatus::flapping;
   const double over_rotation = vehicle.wings.air_density > 0.0 ? result.evidence.over_rotation : absent;

@@ -11,6 +11,7 @@
 #include "wingbeat/parts/piezo.hpp"
 #include "wingbeat/parts/pitching_wings.hpp"
 #include "wingbeat/parts/planform.hpp"
+#include "wingbeat/parts/wing_torsion.hpp"
 
 namespace wingbeat {
 
@@ -72,6 +73,23 @@ void validate(const BladeElement<double>& w) {
   require(planform_key::s3, w.s3);
 }
 
+namespace {
+
+/// Each strip of a wing is a wing: with the parts of I_psi and P that strip_sums() gives it, it takes at least
+/// P_k^2 / I_k of J_w. What that leaves of the bound of P of a wing as a whole.
+double mass_product_share(const PitchingWings<double>& w) {
+  double product = 0.0, inertia = 0.0, least = 0.0;
+  for (std::size_t k = 0; k < w.torsion.strips->position.size(); ++k) {
+    const PitchChordMoments<double> strip = strip_of(w.torsion, k).moments;
+    product += strip.s21;
+    inertia += strip.s30;
+    least += square(strip.s21) / strip.s30;
+  }
+  return product / std::sqrt(inertia * least);
+}
+
+}  // namespace
+
 void validate(const PitchingWings<double>& w, double stroke_inertia) {
   validate(w.hinge);
   require(pitch_key::pitch_inertia, w.pitch_inertia);
@@ -79,6 +97,13 @@ void validate(const PitchingWings<double>& w, double stroke_inertia) {
   require(pitch_key::damping_coefficient, w.damping_coefficient);
   require(pitch_key::edge_suction, w.edge_suction);
   const double largest = std::sqrt(stroke_inertia * w.pitch_inertia);
+  if (twists(w.torsion) && !(std::abs(w.mass_product) < largest * mass_product_share(w))) {
+    throw ParameterError(
+        pitch_key::mass_product.path,
+        detail::format("no wing that twists has that much: with its mass spread as that of an even "
+                       "membrane, |P| < %.4g sqrt(J_w I_psi), %.4g of %.4g kg m2 in all wings",
+                       mass_product_share(w), largest * mass_product_share(w), std::abs(w.mass_product)));
+  }
   if (!(std::abs(w.mass_product) < largest)) {
     throw ParameterError(pitch_key::mass_product.path,
                          detail::format("no wing has that much: its square must be below wing.inertia times "

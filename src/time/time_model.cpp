@@ -87,7 +87,7 @@ void TimeModel::start(const Coordinates<double>& from) {
   now.jammed = !wingless && uniqueness_now() <= smallest_margin;
   if (indices.pitching && has_friction(vehicle.pitch.hinge)) {
     now.turn = sign_of(from.pitch_velocity);
-    if (from.pitch_velocity == 0.0 && !now.jammed) settle_pitch();
+    if (from.pitch_velocity == 0.0 && !now.jammed) now.held = true;  // begin_piece() decides
   }
 }
 

@@ -196,6 +196,7 @@ class TimeModel {
   void meet_stop();
   void settle_pitch();
   void settle_electronics();
+  void settle_shaft();
   double pressing(const double* y) const;
   double surplus_voltage(double i) const;
   double pitch_margin_at(const double* y) const;

@@ -103,10 +103,16 @@ std::array<double, TimeModel::indicator_count> TimeModel::indicators(double t, c
   return values;
 }
 
-/// At a standstill it is held, or moves on in the direction of the torque.
+/// What rests or is held goes on so, or does not: with the accelerations, what holds it may have jumped.
 void TimeModel::begin_piece() {
   resume();
   settle_electronics();
+  settle_shaft();
+  if (indices.pitching && now.held && !now.jammed && !is_clamped(vehicle.pitch.hinge)) settle_pitch();
+}
+
+/// At a standstill it is held, or moves on in the direction of the torque.
+void TimeModel::settle_shaft() {
   // Without inductance the current jumps with the voltage, and what friction held may not be held any more.
   if (now.jammed || !jumps_ || (now.stuck && indices.inductive)) return;
   const bool leaving = std::exchange(now.leaving, false);
@@ -284,8 +290,7 @@ void TimeModel::meet_stop() {
 
 /// How wings that are held press towards a positive psi [N m].
 double TimeModel::pressing(const double* y) const {
-  const bool stands = now.stuck || (jumps_ && now.moving.speed == 0.0);
-  return stands ? wings_standing(vehicle, instant(now.t, y), mode()).pitching_moment : motion(now.t, y).stop_moment;
+  return now.stuck ? wings_standing(vehicle, instant(now.t, y), mode()).pitching_moment : motion(now.t, y).stop_moment;
 }
 
 /// Whether wings that rest are held, or to which side they go.

@@ -5,7 +5,9 @@
 #include <cmath>
 #include <random>
 
+#include "parts/expect_error.hpp"
 #include "wingbeat/core/jet.hpp"
+#include "wingbeat/core/root.hpp"
 #include "wingbeat/parts/coefficient_sets.hpp"
 #include "wingbeat/parts/twisting_wings.hpp"
 
@@ -150,6 +152,42 @@ TEST(WingTorsion, EveryWattIsAccountedFor) {
       }
     }
   }
+}
+
+// However its strips are pitched, the inertia of stroke, pitch and twist is positive up to the largest mass product
+// that is admitted, and at zero pitch not much beyond it.
+TEST(WingTorsion, MassProductsThatNoStripsCouldHaveAreRefused) {
+  std::mt19937_64 random(31);
+  std::uniform_real_distribution<double> angle(-pi, pi);
+  for (const PlanformShape shape : shapes) {
+    Wings each = wings_of(shape);
+    each.w.air_density = 0.0;
+    each.p.air = {};
+    const auto refused = [&](double product) {
+      each.p.mass_product = product;
+      return error_of([&] { validate(each.p, stroke_inertia); }) != "no error";
+    };
+    const double whole = std::sqrt(stroke_inertia * each.p.pitch_inertia);
+    const double largest = bisect([&](double product) { return !refused(product); }, 0.0, whole).before;
+    EXPECT_LT(largest, 0.95 * whole);
+    const auto inertia = [&](double psi, double tau) {
+      return wings_at_twist(each.w, each.p, stroke_inertia, pitch_state(psi, 0.0, 0.0), {tau, 0.0}, 1.0, 1.0, 1.0)
+          .inertia;
+    };
+    each.p.mass_product = 0.9999 * largest;
+    for (int n = 0; n < 2000; ++n) ASSERT_GT(inertia(angle(random), angle(random)), 0.0);
+    each.p.mass_product = 1.05 * largest;
+    EXPECT_LT(inertia(0.0, 0.0), 0.0);
+  }
+}
+
+TEST(WingTorsion, TheRefusalNamesTheBound) {
+  Wings wings = wings_of(PlanformShape::semi_ellipse);
+  wings.p.mass_product = 2e-8;
+  EXPECT_EQ(
+      error_of([&] { validate(wings.p, stroke_inertia); }),
+      "wing.mass_product: no wing that twists has that much: with its mass spread as that of an even membrane, |P| "
+      "< 0.7978 sqrt(J_w I_psi), 1.888e-08 of 2e-08 kg m2 in all wings");
 }
 
 // A wing clamped at its root, in vacuum: omega^2 = k_tau / integral (r/R)^2 dI.

@@ -50,6 +50,28 @@ TEST(PitchingInTime, ReachesTheOrbitFromRest) {
   }
 }
 
+// Friction that holds the wings on a shaft at rest does not hold them any more at once as the shaft sets off: what it
+// would have to exceed jumps with the acceleration.
+TEST(PitchingInTime, FrictionLetsGoOfTheWingsAsTheCrankSetsOff) {
+  const Vehicle<double> hinged = pitching_vehicle(2e-4);
+  Vehicle<double> v = resolve(reference_design());
+  v.wings = hinged.wings;
+  v.pitch = hinged.pitch;
+  v.pitch.hinge.friction = 1e-9;
+  v.motor.armature_inductance = 0.0;
+  Vehicle<double> without = v;
+  without.pitch.hinge.friction = 0.0;
+  TimeModel model(v, {SupplyType::constant, v.voltage, 0.0, 1.0}), frictionless(without, model.supply);
+  const double soon = 0.02 * model.time_scale;
+  for (TimeModel* m : {&model, &frictionless}) {
+    m->start({});
+    ASSERT_EQ(step_to(*m, soon, 1e-9, TimeIntegrator::automatic), StepOutcome::reached);
+  }
+  EXPECT_FALSE(model.now.held);
+  ASSERT_GT(std::abs(frictionless.now.moving.pitch_angle), 1e-5);
+  EXPECT_NEAR(model.now.moving.pitch_angle / frictionless.now.moving.pitch_angle, 1.0, 1e-3);
+}
+
 TEST(PitchingInTime, ReachesTheOrbitsOfRandomVehicles) {
   using System = PitchDirectSystem<double, 5>;
   std::mt19937_64 random(2611);

@@ -109,6 +109,7 @@ inline WideVehicle drawn_further_vehicle(FurtherBox box, std::uint32_t n, std::u
       const double kind = uniform(0.0, 1.0), stiffness = *d.pitch.stiffness;
       if (kind < 0.7) {
         d.wing.torsion = {stiffness * logarithmic(0.3, 10.0), uniform(0.0, 1.0) * d.pitch.damping};
+        *d.wing.mass_product *= 0.7;  // of an even semi-ellipse that twists, at most 0.735 sqrt(J_w I_psi)
         if (kind < 0.3) d.pitch.stiffness.reset();
       }
       if (kind > 0.5) d.pitch.friction = stiffness * logarithmic(1e-3, 0.1);

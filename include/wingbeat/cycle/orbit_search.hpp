@@ -143,6 +143,18 @@ class OrbitSearch {
     return 1.0 / period;
   }
 
+  /// True where friction of the pitch hinge holds the wings all the time: so it does at any pitch within its reach, and
+  /// nothing brings them back to this one.
+  bool holds_wings() const {
+    if constexpr (!System::on_hinges) return false;
+    else {
+      const PitchHinge<double>& hinge = system_.vehicle.pitch.hinge;
+      return has_friction(hinge) && !is_at_stop(hinge, start()[System::pitch]) &&
+             std::all_of(iterate_.steps.begin(), iterate_.steps.end(),
+                         [](const auto& step) { return step.signs[System::held] < 0.0; });
+    }
+  }
+
   /// True where wings over-rotate for a notable part of the period: there, a second orbit is stable now and then.
   bool over_rotates() {
     if constexpr (!System::on_hinges) return false;
