@@ -167,9 +167,9 @@ std::string describe_giving_up(const StatusEvidence& e) {
     case StatusEvidence::Kind::out_of_steps: return format("no decision within %ld integration steps", e.steps);
     case StatusEvidence::Kind::out_of_time: return format("no decision within %.6g s", e.time);
     case StatusEvidence::Kind::cycles_differ:
-      return e.direct
-                 ? format("successive periods still differ by %.2g after %d periods", e.change, e.cycles)
-                 : format("successive cycles still differ by %.2g of their speed after %d cycles", e.change, e.cycles);
+      if (!std::isfinite(e.change)) return format("the cycles have not settled after %d", e.cycles);
+      return format("the state still changes by %.2g of its size from one %s to the next after %d %ss", e.change,
+                    e.direct ? "period" : "cycle", e.cycles, e.direct ? "period" : "cycle");
     case StatusEvidence::Kind::cancelled: return "cancelled";
     case StatusEvidence::Kind::runs_away:
       return format(

@@ -65,6 +65,11 @@ bool CrankStartUp::cycle_done_constant() {
   const double noise = 30.0 * relative_tolerance_;
   const double previous = change_;
   change_ = state_change(before);
+  changes_.push_back(change_);
+  if (never_repeats()) {
+    give_up({.kind = Evidence::cycles_differ, .change = change_, .cycles = int(crossings_.size())});
+    return true;
+  }
   if (cycles_compared_ >= 3 && previous > noise && !model_.measuring) {
     last_rate_ = rate_;
     rate_ = std::min(change_ / previous, 10.0);

@@ -159,17 +159,6 @@ bool DirectStartUp::skip_failed(double change) {
   return true;
 }
 
-/// True where periods come no nearer to each other. Whatever settles within `max_cycles` more than halves its changes
-/// over the periods watched.
-bool DirectStartUp::never_repeats() const {
-  constexpr std::ptrdiff_t watched = 250;
-  constexpr double far = 1e-2;
-  const auto end = changes_.end();
-  if (changes_.size() < 4 * watched || changes_.size() % watched != 0) return false;
-  const double least = *std::min_element(end - watched, end);
-  return least > far && least > 0.5 * *std::min_element(end - 2 * watched, end - watched);
-}
-
 void DirectStartUp::period_done() {
   ++result_.cycles;
   cycle_begins();

@@ -28,7 +28,6 @@ class DirectStartUp : public StartUpRun {
   bool wings_are_still() const;
   bool rests_for_good();
   bool creeps_to_rest();
-  bool never_repeats() const;
   double periods_skipped(std::size_t first) const;
   bool shaft_returns() const;
   std::vector<double> scaled_state() const;
@@ -50,7 +49,6 @@ class DirectStartUp : public StartUpRun {
   double travel_[2] = {}, last_travel_ = infinity;  ///< of this period: backwards, forwards; the longer of the last
   int creeping_ = 0;                                ///< periods so far
   std::array<double, max_unknowns> before_{};
-  std::vector<double> changes_;
 
   SequenceLimit limit_;
   TimeModel::State before_skip_;

@@ -153,6 +153,17 @@ bool StartUpRun::steps_spent() {
   return done_;
 }
 
+/// True where cycles come no nearer to each other. Whatever settles within `max_cycles` more than halves its changes
+/// over the cycles watched.
+bool StartUpRun::never_repeats() const {
+  constexpr std::ptrdiff_t watched = 250;
+  constexpr double far = 1e-2;
+  const auto end = changes_.end();
+  if (changes_.size() < 4 * watched || changes_.size() % watched != 0) return false;
+  const double least = *std::min_element(end - watched, end);
+  return least > far && least > 0.5 * *std::min_element(end - 2 * watched, end - watched);
+}
+
 /// From now on, with implicit steps.
 void StartUpRun::take_stiff() {
   stiff_ = result_.stiff = true;

@@ -6,6 +6,7 @@
 #include <array>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "time/event_loop.hpp"
 #include "time/pitch_samples.hpp"
@@ -89,6 +90,7 @@ class StartUpRun {
 
   void take_stiff();
   void begin_measuring();
+  bool never_repeats() const;
   /// Of `cycles` cycles between two times [s].
   void take_metrics(double start, double end, int cycles);
   void give_up_open_balance(const EnergyAudit& audit);
@@ -118,6 +120,7 @@ class StartUpRun {
   std::optional<Metrics<double>> last_metrics_;  ///< of the cycle before, found with the relative tolerance
   double measured_with_ = 0.0;
   CycleExtremes<double> extremes_{};
+  std::vector<double> changes_;  ///< of the state from cycle to cycle, relative
   PitchSamples pitching_;
   double measured_from_ = 0.0, stored_mark_ = 0.0;
   double current_before_ = 0.0;    ///< before the last change [A]

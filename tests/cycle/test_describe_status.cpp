@@ -160,9 +160,13 @@ TEST(DescribeStatus, Undecided) {
   EXPECT_EQ(of_shaft({.kind = Evidence::out_of_steps, .steps = 100}), "no decision within 100 integration steps");
   EXPECT_EQ(of_shaft({.kind = Evidence::out_of_time, .time = 0.02}), "no decision within 0.02 s");
   EXPECT_EQ(of_shaft({.kind = Evidence::cycles_differ, .change = 0.012, .cycles = 50}),
-            "successive periods still differ by 0.012 after 50 periods");
-  EXPECT_EQ(describe({.kind = Evidence::cycles_differ, .frequency = 17.0, .change = 0.012, .cycles = 50}),
-            "successive cycles still differ by 0.012 of their speed after 50 cycles; it flaps at 17 Hz then");
+            "the state still changes by 0.012 of its size from one period to the next after 50 periods");
+  EXPECT_EQ(
+      describe({.kind = Evidence::cycles_differ, .frequency = 17.0, .change = 0.012, .cycles = 50}),
+      "the state still changes by 0.012 of its size from one cycle to the next after 50 cycles; it flaps at 17 Hz "
+      "then");
+  EXPECT_EQ(describe({.kind = Evidence::cycles_differ, .frequency = 17.0, .change = infinity, .cycles = 50}),
+            "the cycles have not settled after 50; it flaps at 17 Hz then");
   EXPECT_EQ(of_shaft({.kind = Evidence::cancelled}), "cancelled");
   EXPECT_EQ(describe({.kind = Evidence::runs_away, .frequency = 17.0, .crank_speed = -1234.0}),
             "the crank speeds up without bound (-1.23e+03 rad/s): this transmission formulation does not conserve "
