@@ -1,4 +1,5 @@
-// Vehicles with two stable orbits, of which the search alone found the one that a start from rest does not reach.
+// Vehicles with two stable orbits, of which the search alone found the one that a start from rest does not reach, or
+// with one for each pitch at which friction of the hinges can hold the wings.
 #include <gtest/gtest.h>
 
 #include "vehicle/further_boxes.hpp"
@@ -39,5 +40,28 @@ INSTANTIATE_TEST_SUITE_P(Boxes, SecondOrbit,
                            return std::string(further_box_names[std::size_t(known.param.box)]) + "_" +
                                   std::to_string(known.param.n);
                          });
+
+class HeldWings : public testing::TestWithParam<std::uint32_t> {};
+
+TEST_P(HeldWings, AreHeldWhereAStartFromRestLeavesThem) {
+  const WideVehicle w = further_vehicle(FurtherBox::soft_wings, GetParam());
+  const Vehicle<double> vehicle = resolve(w.design, w.condition);
+  ASSERT_TRUE(has_friction(vehicle.pitch.hinge));
+  const SteadyFlapping found = find_steady_flapping(vehicle, {}, start_up_in_time());
+  const TransientResult simulated = simulate_start_up(vehicle);
+  ASSERT_EQ(found.status, FlappingStatus::flapping);
+  ASSERT_TRUE(simulated.settled && simulated.metrics);
+  const Metrics<double>& reached = *simulated.metrics;
+  for (const Metric m : {Metric::frequency, Metric::power_electrical, Metric::power_aerodynamic,
+                         Metric::stroke_amplitude, Metric::angle_of_attack_min}) {
+    EXPECT_NEAR(found.metrics[m], reached[m], 1e-5 * std::abs(reached[m])) << metric_info(m).key;
+  }
+  EXPECT_NEAR(found.metrics[Metric::lift_mean], reached[Metric::lift_mean], 1e-9);
+  EXPECT_EQ(found.metrics[Metric::pitch_amplitude], 0.0);
+}
+
+// A crank whose wings are left away from the middle; direct drives whose search ends where they still slip.
+INSTANTIATE_TEST_SUITE_P(SoftWings, HeldWings, testing::Values(230, 562, 948),
+                         [](const auto& known) { return "vehicle_" + std::to_string(known.param); });
 
 }  // namespace
