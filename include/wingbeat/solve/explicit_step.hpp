@@ -119,10 +119,6 @@ constexpr void unroll(std::index_sequence<j...>, F&& f) {
   (f(std::integral_constant<std::size_t, j>{}), ...);
 }
 
-}  // namespace detail
-
-namespace detail {
-
 /// explicit_step() between stages at given places, which rates() takes; `end` is left out.
 template <bool quadratures, class System, class Places>
 StepResult<System> explicit_step_at(const System& system, const Places& places, const typename System::State& y,
