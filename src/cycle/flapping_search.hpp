@@ -44,6 +44,18 @@ class StableOrbits {
     keep(guess, max_evaluations, [&](auto& orbit) { return orbit.search_near(guess); });
   }
 
+  /// Searches for the mirror image of the only orbit known: half a period later, all turned round, a drive without an
+  /// offset moves as before, and so an orbit that is not its own mirror image has a twin.
+  void attempt_mirror_image()
+    requires(!System::turns)
+  {
+    if (orbits_.size() != 1 || system_.vehicle.voltage_offset != 0.0) return;
+    State mirrored = orbits_[0].half_way();
+    for (double& y : mirrored) y = -y;
+    mirrored[0] += 2.0 * system_.vehicle.spring.rest_angle;
+    if (apart(mirrored, orbits_[0].start(), springs_return() ? 0 : 1) > same) attempt_near(mirrored);
+  }
+
   /// Which of them it is that a simulation has settled on, at that state; it is sought there where none is known.
   std::optional<std::size_t> reached_at(const State& settled) {
     std::optional<std::size_t> which = nearest_to(settled);
@@ -95,6 +107,7 @@ class StableOrbits {
 
  private:
   static constexpr double close = 1e-2;  ///< to an orbit: on the way to it
+  static constexpr double same = 1e-3;   ///< orbits that are nearer to each other are one
   /// Of iterates alone: where hinges hold the wings, their errors decide where.
   static constexpr solver::IterateOptions usual{.tolerance = 1e-6, .max_steps = 2000},
       on_held{.tolerance = 1e-9, .max_steps = 20000};
@@ -112,7 +125,6 @@ class StableOrbits {
 
   template <class Search>
   void keep(const State& guess, long max_evaluations, const Search& search) {
-    constexpr double same = 1e-3;  // orbits that are nearer to each other are one
     if (!system_.admissible(guess)) return;
     auto [orbit, is_found] = found(max_evaluations, search);
     last_ = orbit.summary();
@@ -227,6 +239,9 @@ SteadyFlapping search_flapping(const Vehicle<double>& vehicle, const SteadyOptio
     orbits.attempt_near(before, Drive::part);
   }
   if (orbits.empty()) drive.search(orbits);
+  if constexpr (System::on_hinges && !System::turns) {
+    if (start_up) orbits.attempt_mirror_image();
+  }
   shared.orbit.clear();
   result.summary = orbits.last();
 

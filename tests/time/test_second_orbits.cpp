@@ -41,6 +41,16 @@ INSTANTIATE_TEST_SUITE_P(Boxes, SecondOrbit,
                                   std::to_string(known.param.n);
                          });
 
+// Without an offset of the supply, an orbit that is not its own mirror image half a period later has a twin; which of
+// them a start from rest reaches is chance here: the motion wanders for hundreds of periods before.
+TEST(MirroredOrbit, AnOrbitThatIsNotItsOwnMirrorImageHasATwin) {
+  const WideVehicle w = further_vehicle(FurtherBox::direct_losses, 655);
+  const SteadyFlapping found = find_steady_flapping(resolve(w.design, w.condition), {}, start_up_in_time());
+  ASSERT_EQ(found.status, FlappingStatus::flapping);
+  const double amplitude = found.metrics[Metric::stroke_amplitude];
+  EXPECT_NEAR(found.evidence.other_amplitude, amplitude, 1e-5 * amplitude);
+}
+
 class HeldWings : public testing::TestWithParam<std::uint32_t> {};
 
 TEST_P(HeldWings, AreHeldWhereAStartFromRestLeavesThem) {

@@ -137,6 +137,12 @@ class OrbitSearch {
   /// True where a start() is known, if only that of the last iterate of a search that ended without an orbit.
   bool started() const { return !iterate_.steps.empty(); }
   const State& start() const { return iterate_.steps.front().y; }
+  /// Half a period after start().
+  State half_way() const {
+    const solver::Step<System>& last = iterate_.steps.back();
+    const double x = 0.5 * (iterate_.steps.front().x + last.x + last.h);
+    return solver::evaluate_inside<false>(system_, iterate_, solver::step_at(iterate_, x), x).y;
+  }
   double frequency() const {
     double period = 0.0;
     for (const auto& step : iterate_.steps) period += step.dq[std::size_t(Integral::time)];
