@@ -55,10 +55,10 @@ struct Peer {
     const CrankKinematics<double> k = crank_kinematics(geometry, std::sin(theta), std::cos(theta));
     const double stroke = k.stroke_slope >= 0.0 ? 1.0 : -1.0;
     Mode<double> mode{.stroke = stroke};
-    const IntermediateTerms<double> terms =
-        terms_at(vehicle, MotionState<double>{{k, spring_moment(vehicle, k)}, omega, i, vehicle.voltage}, mode);
+    const MotionState<double> instant{{k, spring_moment(vehicle, k)}, omega, i, vehicle.voltage};
+    const IntermediateTerms<double> terms = terms_at(vehicle, instant, mode);
     mode.force = terms.force_switch >= 0.0 ? 1.0 : -1.0;
-    const Motion<double> m = motion_on(vehicle, terms, mode);
+    const Motion<double> m = motion_on(vehicle, instant, terms, mode);
     const double dt = 1.0 / omega;
     du[0] = m.crank_acceleration * dt / scale[0];
     du[1] = m.inductive_voltage / vehicle.motor.armature_inductance * dt / scale[1];

@@ -52,7 +52,7 @@ Motion<L> DirectPackOrbit<L, N>::motion_of(const L& beta, const L& omega, const 
   const L N_k_beta = vehicle_.wing_count * vehicle_.spring.stiffness * beta;
   const Mode<L> upward;
   const MotionState<L> instant{{direct_kinematics<L>(), N_k_beta}, omega, i, v};
-  return motion_on<has_added_mass>(vehicle_, terms_at<has_added_mass>(vehicle_, instant, upward), upward);
+  return motion_on<has_added_mass>(vehicle_, instant, terms_at<has_added_mass>(vehicle_, instant, upward), upward);
 }
 
 template <class L, int N>

@@ -96,20 +96,25 @@ struct HalfCycle {
   /// The branch that holds is chosen on the spot.
   [[gnu::always_inline]] Motion<S> motion_on_its_branch(const Configuration<S>& configuration, const State& y) const {
     if (has_every_law) return motion_on_its_branch_by_every_law(configuration, y);
-    const IntermediateTerms<S> terms = terms_of<false>(configuration, y);
-    return motion_on<false>(vehicle, terms, mode(sign_of(terms.force_switch)));
+    const Instant instant = instant_at(configuration, y);
+    const IntermediateTerms<S> terms = terms_at<false>(vehicle, instant, mode(S(1.0)));
+    return motion_on<false>(vehicle, instant, terms, mode(sign_of(terms.force_switch)));
   }
 
-  template <bool every_law>
-  [[gnu::always_inline]] IntermediateTerms<S> terms_of(const Configuration<S>& configuration, const State& y) const {
+  /// A MotionState without a copy of its configuration.
+  struct Instant {
+    const Configuration<S>& configuration;
+    S omega, current, voltage;
+  };
+  [[gnu::always_inline]] Instant instant_at(const Configuration<S>& configuration, const State& y) const {
     const S i = current(y);
-    const S v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-    return terms_at<every_law>(vehicle, MotionState<S>{configuration, y[0], i, v_t}, mode(S(1.0)));
+    return {configuration, y[0], i, terminal_voltage(vehicle, vehicle.voltage, i)};
   }
   template <bool every_law>
   [[gnu::always_inline]] Motion<S> motion_of(const Configuration<S>& configuration, const State& y,
                                              const S& force) const {
-    return motion_on<every_law>(vehicle, terms_of<every_law>(configuration, y), mode(force));
+    const Instant instant = instant_at(configuration, y);
+    return motion_on<every_law>(vehicle, instant, terms_at<every_law>(vehicle, instant, mode(S(1.0))), mode(force));
   }
 
   // Out of the way of vehicles without: a call in the midst of an evaluation costs registers.
@@ -117,9 +122,10 @@ struct HalfCycle {
                                                                 const State& y) const {
     HalfCycle branch = *this;
     branch.pitching = sign_of(pitch_margin_at(configuration, y));
+    const Instant instant = instant_at(configuration, y);
     const auto motion = [&] {
-      const IntermediateTerms<S> terms = branch.template terms_of<true>(configuration, y);
-      return motion_on<true>(vehicle, terms, branch.mode(sign_of(terms.force_switch)));
+      const IntermediateTerms<S> terms = terms_at<true>(vehicle, instant, branch.mode(S(1.0)));
+      return motion_on<true>(vehicle, instant, terms, branch.mode(sign_of(terms.force_switch)));
     };
     branch.gear = S(1.0);
     Motion<S> m = motion();

@@ -83,7 +83,8 @@ PitchMotion<S> pitch_motion_at(const V<S>& v, const State& instant, const Mode<S
   const auto take = [&](const WingsAtPitch<S>& wings) {
     const AeroLoads<S> aero{wings.aero.angle_of_attack, S(1.0),           S(0.0),
                             wings.aero.stroke_moment,   wings.aero.power, wings.inertia - N_J};
-    static_cast<Motion<S>&>(m) = motion_on(v, terms_under(v, instant, {aero, wings.inertia, wings.moment}, mode), mode);
+    static_cast<Motion<S>&>(m) =
+        motion_on(v, instant, terms_under(v, instant, {aero, wings.inertia, wings.moment}, mode), mode);
     if constexpr (ScalarTraits<S>::reads_tables) {
       if (value_of(mode.slip) < 0.0) {
         detail::stand_still<V, S>(v, wings.moment, m, instant.configuration.spring_moment, actuator_load(instant));

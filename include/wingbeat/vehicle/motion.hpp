@@ -148,8 +148,6 @@ template <bool every_law = true, template <Scalar> class V, Scalar S>
 /// What is known of an instant before the sign of the rod force.
 template <Scalar S>
 struct IntermediateTerms {
-  Configuration<S> configuration;
-  S omega, current, voltage;  ///< of the instant
   MotorLoads<S> motor;
   S stroke_velocity;  ///< beta' [rad/s]
   AeroLoads<S> aero;  ///< of all wings
@@ -179,10 +177,6 @@ template <bool every_law = true, template <Scalar> class V, Scalar S, class Stat
                                                                const StrokeLoads<S>& loads, const Mode<S>& mode) {
   const CrankKinematics<S>& k = instant.configuration.kinematics;
   IntermediateTerms<S> terms;
-  terms.configuration = instant.configuration;
-  terms.omega = instant.omega;
-  terms.current = instant.current;
-  terms.voltage = instant.voltage;
   terms.motor = motor_loads(v.motor, instant.voltage, instant.current, instant.omega);
   terms.stroke_velocity = k.stroke_slope * instant.omega;
   terms.aero = loads.aero;
@@ -232,22 +226,22 @@ template <bool every_law = true, template <Scalar> class V, Scalar S, class Stat
 /// T_\mathrm{m} = F h + \mu r_\mathrm{e} |F| \operatorname{sign}\omega + T_\mathrm{l} + T_\mathrm{x}
 /// \end{aligned}
 /// \f]
-template <bool every_law = true, template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const IntermediateTerms<S>& terms,
-                                                  const Mode<S>& mode) {
+template <bool every_law = true, template <Scalar> class V, Scalar S, class State>
+[[gnu::always_inline]] inline Motion<S> motion_on(const V<S>& v, const State& instant,
+                                                  const IntermediateTerms<S>& terms, const Mode<S>& mode) {
   Motion<S> m;
-  m.kinematics = terms.configuration.kinematics;
-  const CrankKinematics<S>& k = m.kinematics;
+  m.kinematics = instant.configuration.kinematics;
+  const CrankKinematics<S>& k = instant.configuration.kinematics;
   const S J = terms.inertia;
   const S g = k.wing_jacobian;
-  const S omega2 = square(terms.omega);
+  const S omega2 = square(instant.omega);
   // mu r_e |F| sign(omega) = s mu r_e F with s = sign(F) sign(omega), on this branch.
   const S lever = k.crank_jacobian + mode.force * mode.direction * v.friction.radius;
   const S inertia_g = J * g + terms.A_g * lever;
   const S divisor = inverse_of(inertia_g);
 
-  m.current = terms.current;
-  m.voltage = terms.voltage;
+  m.current = instant.current;
+  m.voltage = instant.voltage;
   m.stroke_velocity = terms.stroke_velocity;
   m.aero = terms.aero;
   m.force_switch = terms.force_switch;
@@ -262,9 +256,9 @@ template <bool every_law = true, template <Scalar> class V, Scalar S>
     m.gear_torque =
         mode.direction * (terms.motor.torque - terms.motor.drag_torque - v.motor.inertia * m.crank_acceleration) -
         v.motor.friction_torque;
-    m.gear_loss = (S(1.0) - terms.gear_ratio) * m.gear_torque * mode.direction * terms.omega;
+    m.gear_loss = (S(1.0) - terms.gear_ratio) * m.gear_torque * mode.direction * instant.omega;
   }
-  m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + terms.configuration.spring_moment;
+  m.stored_moment = v.wing_count * v.wing_inertia * m.stroke_acceleration + instant.configuration.spring_moment;
   m.inductive_voltage = terms.motor.inductive_voltage;
   return m;
 }
@@ -272,7 +266,7 @@ template <bool every_law = true, template <Scalar> class V, Scalar S>
 /// What acts at an instant on wings under the pitch law, in a given mode.
 template <template <Scalar> class V, Scalar S, class State>
 [[gnu::always_inline]] inline Motion<S> motion_at(const V<S>& v, const State& instant, const Mode<S>& mode) {
-  return motion_on(v, terms_at(v, instant, mode), mode);
+  return motion_on(v, instant, terms_at(v, instant, mode), mode);
 }
 
 /// Voltage at the motor terminals, \f$v - R_\mathrm{i} i\f$ [V], under the current i [A], where the supply drives
