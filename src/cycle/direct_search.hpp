@@ -52,6 +52,7 @@ class DirectSearch {
       }
       if (responds && !hinged) orbits.attempt(harmonic(0.0), part);
       if (orbits.empty() && orbits.unfinished()) orbits.attempt(*orbits.unfinished());
+      orbits.attempt_mirror_image();
     } else {
       if (responds) orbits.attempt(harmonic(0.0));
       if (orbits.empty() && !std::isfinite(orbits.unstable_multiplier())) orbits.attempt(at_rest());

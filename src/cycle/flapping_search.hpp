@@ -44,8 +44,8 @@ class StableOrbits {
     keep(guess, max_evaluations, [&](auto& orbit) { return orbit.search_near(guess); });
   }
 
-  /// Searches for the mirror image of the only orbit known: half a period later, all turned round, a drive without an
-  /// offset moves as before, and so an orbit that is not its own mirror image has a twin.
+  /// Searches for the mirror image of the only orbit known. Under a sine without an offset the equations stay the same
+  /// if every state changes its sign and time moves by half a period: an orbit that changes by this has a twin.
   void attempt_mirror_image()
     requires(!System::turns)
   {
@@ -239,9 +239,6 @@ SteadyFlapping search_flapping(const Vehicle<double>& vehicle, const SteadyOptio
     orbits.attempt_near(before, Drive::part);
   }
   if (orbits.empty()) drive.search(orbits);
-  if constexpr (System::on_hinges && !System::turns) {
-    if (start_up) orbits.attempt_mirror_image();
-  }
   shared.orbit.clear();
   result.summary = orbits.last();
 

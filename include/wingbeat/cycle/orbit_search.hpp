@@ -149,17 +149,19 @@ class OrbitSearch {
     return 1.0 / period;
   }
 
-  /// True where friction of the pitch hinge holds the wings all the time, or but for slips that come to an end: so it
-  /// does at any pitch within its reach, and nothing brings them back to this one.
+  /// True where friction of the pitch hinge holds the wings all the time, or lets them slip less and less: so it does
+  /// at any pitch within its reach, and nothing brings them back to this one.
   bool holds_wings() const {
     if constexpr (!System::on_hinges) return false;
     else {
       constexpr double slip = 1e-8;  // of the pitch, in rad
       const PitchHinge<double>& hinge = system_.vehicle.pitch.hinge;
       if (!has_friction(hinge) || is_at_stop(hinge, start()[System::pitch])) return false;
-      return std::all_of(iterate_.steps.begin(), iterate_.steps.end(), [&](const auto& step) {
-        return step.signs[System::held] < 0.0 || std::abs(step.y[System::pitch] - start()[System::pitch]) < slip;
-      });
+      const auto is_held = [](const auto& step) { return step.signs[System::held] < 0.0; };
+      return std::any_of(iterate_.steps.begin(), iterate_.steps.end(), is_held) &&
+             std::all_of(iterate_.steps.begin(), iterate_.steps.end(), [&](const auto& step) {
+               return is_held(step) || std::abs(step.y[System::pitch] - start()[System::pitch]) < slip;
+             });
     }
   }
 

@@ -96,24 +96,24 @@ struct HalfCycle {
   /// The branch that holds is chosen on the spot.
   [[gnu::always_inline]] Motion<S> motion_on_its_branch(const Configuration<S>& configuration, const State& y) const {
     if (has_every_law) return motion_on_its_branch_by_every_law(configuration, y);
-    const Instant instant = instant_at(configuration, y);
+    const MotionStateView instant = motion_state(configuration, y);
     const IntermediateTerms<S> terms = terms_at<false>(vehicle, instant, mode(S(1.0)));
     return motion_on<false>(vehicle, instant, terms, mode(sign_of(terms.force_switch)));
   }
 
   /// A MotionState without a copy of its configuration.
-  struct Instant {
+  struct MotionStateView {
     const Configuration<S>& configuration;
     S omega, current, voltage;
   };
-  [[gnu::always_inline]] Instant instant_at(const Configuration<S>& configuration, const State& y) const {
+  [[gnu::always_inline]] MotionStateView motion_state(const Configuration<S>& configuration, const State& y) const {
     const S i = current(y);
     return {configuration, y[0], i, terminal_voltage(vehicle, vehicle.voltage, i)};
   }
   template <bool every_law>
   [[gnu::always_inline]] Motion<S> motion_of(const Configuration<S>& configuration, const State& y,
                                              const S& force) const {
-    const Instant instant = instant_at(configuration, y);
+    const MotionStateView instant = motion_state(configuration, y);
     return motion_on<every_law>(vehicle, instant, terms_at<every_law>(vehicle, instant, mode(S(1.0))), mode(force));
   }
 
@@ -122,7 +122,7 @@ struct HalfCycle {
                                                                 const State& y) const {
     HalfCycle branch = *this;
     branch.pitching = sign_of(pitch_margin_at(configuration, y));
-    const Instant instant = instant_at(configuration, y);
+    const MotionStateView instant = motion_state(configuration, y);
     const auto motion = [&] {
       const IntermediateTerms<S> terms = terms_at<true>(vehicle, instant, branch.mode(S(1.0)));
       return motion_on<true>(vehicle, instant, terms, branch.mode(sign_of(terms.force_switch)));
