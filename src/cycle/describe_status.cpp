@@ -102,6 +102,11 @@ std::string describe_stall(const StatusEvidence& e) {
           "the motor never breaks away: at %.4g Hz the supply gives it a torque of %.4g N m at most, "
           "which does not exceed the constant friction %.4g N m",
           e.frequency, e.torque, e.friction_torque);
+    case StatusEvidence::Kind::weak_alternation:
+      return format(
+          "no motion outlasts the start: at %.4g Hz the supply's torque alternates by +-%.4g N m, "
+          "which does not exceed the constant friction %.4g N m",
+          e.frequency, e.torque, e.friction_torque);
     case StatusEvidence::Kind::stalled_crank:
       return format(
           "the motor cannot turn: stall torque %.4g N m does not exceed the constant friction of "

@@ -22,6 +22,19 @@ double resistance(const Vehicle<double>& v, double speed) {
   return 2.0 * sum / samples + v.motor.viscous_damping * speed;
 }
 
+/// Half of what a piezo's force on a shaft that stands changes by within a period [N]. A compliant transmission passes
+/// on what the bent series stiffness takes of it, the tip swinging:
+/// \f[
+/// \frac{k_\mathrm{s}}{|k_\mathrm{a} + k_\mathrm{s} - m_\mathrm{a} w^2 + \mathrm{j} w c_\mathrm{a}|}
+/// \f]
+double alternating_force(const Vehicle<double>& v, double w) {
+  const Piezo<double>& p = v.piezo;
+  const auto force = [&](double voltage) { return force_per_volt_at(p, voltage) * voltage; };
+  const double half = 0.5 * (force(v.voltage_offset + v.voltage) - force(v.voltage_offset - v.voltage));
+  if (!is_compliant(p)) return half;
+  return half * p.series_stiffness / std::hypot(p.stiffness + p.series_stiffness - p.mass * square(w), w * p.damping);
+}
+
 }  // namespace
 
 DirectBalance direct_balance(const Vehicle<double>& v) {
@@ -39,13 +52,13 @@ DirectBalance direct_balance(const Vehicle<double>& v) {
   const double inertia = m.inertia + v.wing_count * v.wing_inertia;
   const double reactance = w * inertia - (v.wing_count * v.spring.stiffness + own_stiffness) / w;
 
-  DirectBalance balance{std::abs(drive), breakaway_torque(v), {}};
+  DirectBalance balance{piezo ? alternating_force(v, w) * per_ratio : std::abs(drive), breakaway_torque(v), {}};
+  const double push = std::abs(drive);
   // |Z(Omega)| Omega = K V / |R_a + j w L_a|; the left side grows with Omega unless drag falls with speed.
   const auto impedance = [&](double speed) { return resistance(v, speed) / speed + j * reactance + from_motor; };
-  const auto surplus = [&](double speed) { return balance.drive_torque - std::abs(impedance(speed)) * speed; };
+  const auto surplus = [&](double speed) { return push - std::abs(impedance(speed)) * speed; };
   constexpr double limit = 1e6;  // [rad/s], of an undamped actuator at resonance
-  const double fastest =
-      std::min(limit, balance.drive_torque / std::abs(from_motor + m.viscous_damping + j * reactance));
+  const double fastest = std::min(limit, push / std::abs(from_motor + m.viscous_damping + j * reactance));
   constexpr int speeds = 80;
   const double ratio = std::pow(1e-4, 1.0 / speeds);
   double high = 1.001 * fastest, at_high = surplus(high);

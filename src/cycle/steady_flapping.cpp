@@ -29,7 +29,7 @@ bool detail::stalls(const Vehicle<double>& vehicle, const DirectBalance& balance
   result.balance.breakaway_torque = balance.breakaway_torque;
   if (!balance.stalled()) return false;
   result.status = FlappingStatus::stalled;
-  result.evidence = {.kind = Evidence::weak_supply,
+  result.evidence = {.kind = vehicle.voltage_offset == 0.0 ? Evidence::weak_supply : Evidence::weak_alternation,
                      .frequency = vehicle.drive_frequency,
                      .torque = balance.drive_torque,
                      .friction_torque = balance.breakaway_torque};

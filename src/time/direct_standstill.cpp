@@ -12,20 +12,30 @@ constexpr int creep_periods = 8;  // of ever shorter slips in one direction, tha
 
 }  // namespace
 
-/// The largest torque of the motor at rest from now on [N m]: its current is a sine and what remains of its start.
-double DirectStartUp::largest_torque() const {
-  const Motor<double>& m = model_.vehicle.motor;
-  if (is_given(model_.vehicle.piezo)) {
-    const double offset = std::abs(model_.vehicle.voltage_offset);
-    return model_.drive_torque * (model_.supply.voltage > 0.0 ? 1.0 + offset / model_.supply.voltage : 1.0);
+/// By how much the torques that supply and springs apply to the shaft at rest leave `middle` from now on [N m]: a
+/// motor's current is a sine and what remains of its start; a piezo's force follows its voltage, behind a compliant
+/// transmission once its tip swings steadily.
+double DirectStartUp::largest_torque(double middle) const {
+  const Vehicle<double>& v = model_.vehicle;
+  const Motor<double>& m = v.motor;
+  if (is_given(v.piezo) && !is_compliant(v.piezo)) {
+    const std::array<double, max_unknowns> y = model_.coordinates_now();
+    const auto off = [&](double phase) { return std::abs(model_.standing_torque(phase * period_, y.data()) - middle); };
+    return std::max(off(0.25), off(0.75));
   }
-  const double w = two_pi * model_.vehicle.drive_frequency;
+  if (is_given(v.piezo)) {
+    const Piezo<double>& p = v.piezo;
+    const FlexurePlace<double> flexure = flexure_at(p, now_.moving.angle);
+    const double force = force_per_volt_at(p, v.voltage_offset) * v.voltage_offset;
+    const double tip = (force + p.series_stiffness * flexure.tip) / (p.stiffness + p.series_stiffness);
+    return model_.drive_torque + std::abs(p.series_stiffness * (tip - flexure.tip) / flexure.slope - middle);
+  }
+  const double w = two_pi * v.drive_frequency;
   const double Z = std::hypot(m.armature_resistance, w * m.armature_inductance);
   const double lag = std::atan2(w * m.armature_inductance, m.armature_resistance);
-  const double remains = model_.indices.inductive
-                             ? std::abs(now_.moving.current - model_.vehicle.voltage / Z * std::sin(w * now_.t - lag))
-                             : 0.0;
-  return model_.drive_torque + m.torque_constant * remains;
+  const double remains =
+      model_.indices.inductive ? std::abs(now_.moving.current - v.voltage / Z * std::sin(w * now_.t - lag)) : 0.0;
+  return model_.drive_torque + m.torque_constant * remains + std::abs(middle);
 }
 
 /// True, with the decision, where nothing moves the shaft any more. Wings that still pitch shake it: they can only come
@@ -38,25 +48,36 @@ bool DirectStartUp::rests_for_good() {
   if (!now_.stuck) stuck_until_ = infinity;
   if (!now_.stuck && !no_drive) return false;
   const StandingTorques<double> torques = model_.standing_torques(now_.moving.angle);
-  const double hold = torques.friction(), torque = largest_torque() + std::abs(torques.middle());
+  const double hold = torques.friction(), torque = largest_torque(torques.middle());
   if (now_.stuck && !no_drive) {
-    if (torque > hold && model_.wings_rest()) return false;
+    // A tip that still swings may break the shaft away; if it does not, a steady period shows it.
+    const bool tip_rests = !is_given(model_.vehicle.piezo) || !is_compliant(model_.vehicle.piezo);
+    if ((torque > hold || !tip_rests) && model_.wings_rest()) return false;
     if (!model_.wings_rest()) {
       if (stuck_until_ == infinity) stuck_until_ = shaken_until();
       if (now_.t < stuck_until_) return false;
     }
   }
+  if (now_.stuck) {
+    stand(torque, hold);
+  } else {
+    stall(0.0, {.kind = Evidence::no_voltage});
+  }
+  return true;
+}
+
+/// The decision that friction `hold` keeps the shaft where it stands against `torque` [N m].
+void DirectStartUp::stand(double torque, double hold) {
+  stall(std::max(0.0, hold - torque),
+        {.kind = Evidence::held_shaft, .angle = now_.moving.angle, .torque = torque, .friction_torque = hold});
+}
+
+void DirectStartUp::stall(double margin, StatusEvidence why) {
   decide(FlappingStatus::stalled);
   result_.time_to_steady = now_.t;
   result_.lock_angle = now_.moving.angle;
-  result_.torque_margin = now_.stuck ? std::max(0.0, hold - torque) : 0.0;
-  if (now_.stuck) {
-    result_.evidence = {
-        .kind = Evidence::held_shaft, .angle = now_.moving.angle, .torque = torque, .friction_torque = hold};
-  } else {
-    result_.evidence = {.kind = Evidence::no_voltage};
-  }
-  return true;
+  result_.torque_margin = margin;
+  result_.evidence = std::move(why);
 }
 
 /// Of wings that pitch: as nearly as the stroke has to be where nothing drives it.
@@ -77,15 +98,11 @@ bool DirectStartUp::creeps_to_rest() {
   last_travel_ = travel;
   travel_[0] = travel_[1] = 0.0;
   if (creeping_ < creep_periods) return false;
-  decide(FlappingStatus::stalled);
-  result_.time_to_steady = now_.t;
-  result_.lock_angle = now_.moving.angle;
-  result_.torque_margin = model_.constant_friction - model_.drive_torque;
-  result_.evidence = {.kind = Evidence::creeping_shaft,
-                      .angle = now_.moving.angle,
-                      .torque = model_.drive_torque,
-                      .friction_torque = model_.constant_friction,
-                      .travel = travel};
+  stall(model_.constant_friction - model_.drive_torque, {.kind = Evidence::creeping_shaft,
+                                                         .angle = now_.moving.angle,
+                                                         .torque = model_.drive_torque,
+                                                         .friction_torque = model_.constant_friction,
+                                                         .travel = travel});
   return true;
 }
 

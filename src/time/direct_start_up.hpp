@@ -24,9 +24,11 @@ class DirectStartUp : public StartUpRun {
 
   void period_done();
   void settle(double closure, double change);
-  double largest_torque() const;
+  double largest_torque(double middle) const;
   bool wings_are_still() const;
   bool rests_for_good();
+  void stand(double torque, double hold);
+  void stall(double margin, StatusEvidence why);
   bool creeps_to_rest();
   double periods_skipped(std::size_t first) const;
   bool shaft_returns() const;

@@ -2,6 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "wingbeat/core/text.hpp"
 #include "wingbeat/parts/any_transmission.hpp"
@@ -16,6 +20,28 @@
 
 namespace wingbeat {
 namespace {
+
+/// What a number of a design may be, apart from the table's long rows: sweeps ask for it with every design.
+struct NumberBounds {
+  std::optional<double> (*get)(const Design<double>&);
+  double lower, upper;  ///< finite; none of whole numbers
+  const Parameter<double>* parameter;
+};
+
+std::vector<NumberBounds> bounds_of_numbers() {
+  constexpr double infinity = std::numeric_limits<double>::infinity(), largest = std::numeric_limits<double>::max();
+  std::vector<NumberBounds> numbers;
+  for (const Parameter<double>& parameter : parameter_table<double>()) {
+    if (!parameter.get) continue;
+    const ParameterRange& r = parameter.range;
+    NumberBounds number{parameter.get, r.above_lower ? std::nextafter(r.lower, infinity) : r.lower,
+                        r.below_upper ? std::nextafter(r.upper, -infinity) : r.upper, &parameter};
+    number.lower = r.whole ? infinity : std::max(number.lower, -largest);
+    number.upper = r.whole ? -infinity : std::min(number.upper, largest);
+    numbers.push_back(number);
+  }
+  return numbers;
+}
 
 /// Of a transmission that either fixes.
 void validate_hinge_offset(const Design<double>& d) {
@@ -302,11 +328,14 @@ Design<double> with_any_pitch_coefficient(Design<double> d) {
 }
 
 void validate(const Design<double>& d) {
-  for (const Parameter<double>& parameter : parameter_table<double>()) {
-    const std::optional<double> x = parameter.get ? parameter.get(d) : std::nullopt;
-    if (!x || (parameter.range.holds(*x) && std::isfinite(*x))) continue;
-    throw ParameterError(std::string(parameter.path),
-                         range_message(parameter.range.expected, std::string(parameter.unit).c_str(), *x));
+  static const std::vector<NumberBounds> numbers = bounds_of_numbers();
+  for (const NumberBounds& number : numbers) {
+    const std::optional<double> x = number.get(d);
+    if (!x || (*x >= number.lower && *x <= number.upper)) continue;
+    const ParameterRange& range = number.parameter->range;
+    if (range.whole && range.holds(*x) && std::isfinite(*x)) continue;
+    throw ParameterError(std::string(number.parameter->path),
+                         range_message(range.expected, std::string(number.parameter->unit).c_str(), *x));
   }
   if (has_battery(d.supply.type)) {
     validate(d.supply.battery);

@@ -81,6 +81,10 @@ TEST(DescribeStatus, Stalled) {
             "the motor never breaks away: at 22 Hz the supply gives it a torque of 0.003 N m at most, which does not "
             "exceed the constant friction 0.004 N m");
   EXPECT_EQ(
+      describe({.kind = Evidence::weak_alternation, .frequency = 22.0, .torque = 0.003, .friction_torque = 0.004}),
+      "no motion outlasts the start: at 22 Hz the supply's torque alternates by +-0.003 N m, which does not exceed "
+      "the constant friction 0.004 N m");
+  EXPECT_EQ(
       describe({.kind = Evidence::stalled_crank, .angle = 30.0 * degree, .torque = 0.003, .friction_torque = 0.004}),
       "the motor cannot turn: stall torque 0.003 N m does not exceed the constant friction of 0.004 N m (crank at "
       "30.0000 deg)");

@@ -152,6 +152,40 @@ TEST(Actuators, ABrushlessMotorGivesNothingBack) {
   EXPECT_GT(blocked.metrics[Metric::frequency], brushed.metrics[Metric::frequency]);  // nothing brakes it
 }
 
+// An offset moves the shaft at the start; what the voltage alternates by decides whether it moves for good.
+TEST(Actuators, FrictionHoldsAPiezoWhoseVoltageAlternatesTooLittle) {
+  Design<double> d = piezo_design();
+  d.pitch = {};
+  d.aerodynamics.pitch_coefficient = 2e-3;
+  d.aerodynamics.coefficients_name = "translational-2022";
+  d.aerodynamics.coefficients = translational_2022();
+  d.aerodynamics.added_mass = false;
+  d.supply.frequency = 20.0;
+  d.supply.offset = 40.0;
+  for (const double series : {0.0, 500.0}) {
+    for (const double factor : {0.0, 2e-3}) {
+      if (series > 0.0) d.piezo.series_stiffness = series;
+      d.piezo.constants.voltage_factor = factor;
+      const Piezo<double> p = resolve(d).piezo;
+      const auto force = [&](double voltage) {
+        return p.force_per_volt * (1.0 + factor * std::abs(voltage)) * voltage;
+      };
+      double torque = 0.5 * (force(130.0) - force(-50.0)) / p.transmission_ratio;
+      const double w = two_pi * 20.0;
+      if (series > 0.0) torque *= series / std::hypot(p.stiffness + series - p.mass * w * w, w * p.damping);
+      d.friction = {FrictionLaw::constant, 1.02 * torque};
+      const auto [held, held_in_time] = orbit_and_simulation(resolve(d));
+      EXPECT_EQ(held.status, FlappingStatus::stalled) << describe(held.evidence);
+      EXPECT_EQ(held_in_time.status, FlappingStatus::stalled) << describe(held_in_time.evidence);
+      EXPECT_EQ(held.evidence.kind, StatusEvidence::Kind::weak_alternation);
+      EXPECT_EQ(held_in_time.evidence.kind, StatusEvidence::Kind::held_shaft);
+      EXPECT_NE(held_in_time.lock_angle, 0.0);
+      d.friction = {FrictionLaw::constant, 0.9 * torque};
+      EXPECT_TRUE(expect_orbit_as_simulated(d, int(series)).flaps);
+    }
+  }
+}
+
 TEST(Actuators, ElectronicsHoldTheCurrentAtItsLimit) {
   Design<double> d = reference_design();
   d.electronics.efficiency = 0.85;
@@ -169,6 +203,11 @@ TEST(Actuators, ElectronicsHoldTheCurrentAtItsLimit) {
     highest = std::max(highest, in_time.now().current);
   }
   EXPECT_NEAR(highest, 0.15, 1e-9);
+  // A current that follows the speed has a kink there, at a place that is known to the tolerance alone.
+  d.motor.constants.armature_inductance = 0.0;
+  const SteadyFlapping at_once = find_steady_flapping(resolve(d));
+  ASSERT_EQ(at_once.status, FlappingStatus::flapping) << describe(at_once.evidence);
+  EXPECT_EQ(at_once.metrics[Metric::current_peak], 0.15);
 }
 
 TEST(Actuators, WhatTheyCannotBeIsSaid) {

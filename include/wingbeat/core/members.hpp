@@ -8,9 +8,11 @@
 //     return use(of.stiffness, of.damping);
 //   }
 //
-// Members are numbers (S or std::optional<S>), parts, or what is the same for every scalar: choices, texts, tables.
+// Members are numbers (S or std::optional<S>), parts, or what is the same for every scalar: choices, texts, tables. A
+// part that lanes do not know says so (`static constexpr bool off_lanes = true`): see OffLanes.
 #pragma once
 
+#include <cstddef>
 #include <memory>
 #include <optional>
 #include <type_traits>
@@ -92,6 +94,30 @@ constexpr void for_each_number(P& part, const Visit& visit) {
   });
 }
 
+/// Calls visit(number) for every number of a part of which `other`, the same part of another scalar, has one too.
+template <class P, class Q, class Visit>
+constexpr void for_each_number_in_both(P& part, Q& other, const Visit& visit) {
+  const auto each = [&visit](auto& member, auto& its) {
+    using M = std::remove_const_t<std::remove_reference_t<decltype(member)>>;
+    using O = std::remove_const_t<std::remove_reference_t<decltype(its)>>;
+    if constexpr (ListsMembers<M> && ListsMembers<O>) {
+      for_each_number_in_both(member, its, visit);
+    } else if constexpr (Scalar<M> || detail::is_optional<M>) {
+      visit(member);
+    }
+  };
+  std::remove_const_t<P>::members(part, [&](auto&... member) {
+    return std::remove_const_t<Q>::members(other, [&](auto&... its) {
+      (each(member, its), ...);
+      return 0;
+    });
+  });
+}
+
+/// A member for a part that lanes do not know: they have a null pointer there, which takes no time to set up.
+template <template <Scalar> class Part, Scalar S>
+using OffLanes = std::conditional_t<ScalarTraits<S>::reads_tables, Part<S>, std::nullptr_t>;
+
 template <Scalar T, template <Scalar> class Part, Scalar S>
 constexpr auto cast(const Part<S>& part);
 
@@ -104,9 +130,14 @@ constexpr T converted_number(const S& x) {
   else return T(value_of(x));
 }
 
+template <class M>
+concept NotOnLanes = M::off_lanes;
+
 template <Scalar T, class M>
 constexpr auto converted(const M& member) {
-  if constexpr (ListsMembers<M>) {
+  if constexpr (!ScalarTraits<T>::reads_tables && NotOnLanes<M>) {
+    return nullptr;
+  } else if constexpr (ListsMembers<M>) {
     return cast<T>(member);
   } else if constexpr (Scalar<M>) {
     return converted_number<T>(member);

@@ -127,13 +127,13 @@ struct ScalarTraits<Pack<Arch, K>> {
 template <class L, template <Scalar> class Part, class PartOf>
 Part<L> in_packs(const PartOf& part_of) {
   // Not Part<double>, on which clang 14 crashes.
-  constexpr int count = number_count<std::remove_cvref_t<decltype(part_of(0))>>;
+  constexpr int count = number_count<Part<L>>;
   alignas(64) double numbers[count][std::size_t(L::lanes)];
+  Part<L> part = cast<L>(part_of(0));
   for (int lane = 0; lane < L::lanes; ++lane) {
     int n = 0;
-    for_each_number(part_of(lane), [&](double x) { numbers[n++][lane] = x; });
+    for_each_number_in_both(part_of(lane), part, [&](double x) { numbers[n++][lane] = x; });
   }
-  Part<L> part = cast<L>(part_of(0));
   int n = 0;
   for_each_number(part, [&](L& x) { x = L::load(numbers[n++]); });
   return part;

@@ -357,7 +357,13 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
   [[gnu::always_inline]] MotionHere motion(const Configuration<S>& place, const State& y, const Signs& signs) const
     requires(features_.turns && !features_.general)
   {
-    return motion_of(instant(place, y, signs), mode(signs));
+    if constexpr (on_hinges) {
+      return motion_of(instant(place, y, signs), mode(signs));
+    } else {
+      const S i = current(S(0.0), y);
+      return motion_of(MotionStateView<S>{place, y[shaft], i, terminal_voltage(vehicle, vehicle.voltage, i)},
+                       mode(signs));
+    }
   }
   [[gnu::always_inline]] MotionHere motion(const S& x, const State& y, const Signs& signs) const {
     if constexpr (turns && !general) return motion(configuration(x), y, signs);
@@ -365,8 +371,15 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
   }
 
   CycleExtremes<S> candidates(const Motion<S>& m, const State& y, const Signs& signs) const {
-    if constexpr (turns) return extreme_candidates(m, y[shaft], mode(signs));
-    else return extreme_candidates(m, m.stroke_velocity, mode(signs), y[0]);
+    CycleExtremes<S> values;
+    if constexpr (turns) values = extreme_candidates(m, y[shaft], mode(signs));
+    else values = extreme_candidates(m, m.stroke_velocity, mode(signs), y[0]);
+    // The place where a current meets its limit is known less well than the limit.
+    if constexpr (general) {
+      S& current = values[std::size_t(Extreme::current)];
+      current = current_within(vehicle.electronics, current);
+    }
+    return values;
   }
 
   template <bool quadratures>

@@ -33,8 +33,9 @@ struct StatusEvidence {
                       ///< where it is worse than asked for, and steps where those ran out
 
     // Stalled, by statics
-    weak_motor,   ///< torque (the stall torque) does not exceed friction_torque
-    weak_supply,  ///< direct drive: frequency; torque, the largest of a period, does not exceed friction_torque
+    weak_motor,        ///< torque (the stall torque) does not exceed friction_torque
+    weak_supply,       ///< direct drive: frequency; torque, the largest of a period, does not exceed friction_torque
+    weak_alternation,  ///< the same of a supply with an offset, torque being what it alternates by
     // Stalled, in time
     stalled_crank,   ///< torque (the stall torque) does not exceed friction_torque; angle
     held_shaft,      ///< direct drive: angle; friction_torque holds torque, all that supply and springs apply at most

@@ -1,6 +1,7 @@
 // What every src/ensemble/instruction_sets/pack_blocks_*.cpp compiles of direct drives for its instruction set.
 #pragma once
 
+#include "wingbeat/ensemble/block_vehicle.hpp"
 #include "wingbeat/ensemble/direct_pack_balance.hpp"
 #include "wingbeat/ensemble/direct_pack_blocks.hpp"
 #include "wingbeat/ensemble/direct_pack_metrics.hpp"
@@ -26,9 +27,8 @@ void solve_direct_block_of(const EnsembleMember* const* members, int count, cons
     from.store(numbers);
     for (int lane = 0; lane < count; ++lane) to(*results[lane], numbers[lane]);
   };
-  const Vehicle<L> vehicle =
-      in_packs<L, Vehicle>([&](int lane) -> const Vehicle<double>& { return member(lane).vehicle; });
-  DirectPackOrbit<L, N> orbit(vehicle, settings);
+  const BlockVehicle<L> block([&](int lane) -> const Vehicle<double>& { return member(lane).vehicle; });
+  DirectPackOrbit<L, N> orbit(block.vehicle, settings);
   const Metrics<L> found =
       orbit.solve(gather([](const EnsembleMember& m) { return m.reporting.mass; }),
                   gather([](const EnsembleMember& m) { return m.reporting.bench_torque_constant; }));

@@ -58,7 +58,7 @@ struct HalfCycle {
   }
 
   Configuration<S> configuration(const S& u) const {
-    if (!mechanism.is_slider_crank) return configuration_of(mechanism.kinematics(S(middle + u)));
+    if (!mechanism.is_slider_crank) return configuration_of(mechanism.kinematics_of_others(S(middle + u)));
     const SineCosine<S> of_u = sine_cosine_of_reduced(u);
     return configuration_of(crank_kinematics(mechanism.slider, S(half * of_u.sine), S(half * of_u.cosine)));
   }
@@ -79,7 +79,7 @@ struct HalfCycle {
   /// gearbox loses torque, that torque. Without friction but that of the rod force it is F (h + s mu r_e) behind the
   /// gearbox: its sign changes with that of F, where there is a kink already, while |h| > mu r_e, and is positive
   /// elsewhere. What changes sign then is |h| - mu r_e, a little more of it lest it does so at the dead centres.
-  S kink_margin_at(const Configuration<S>& configuration, const State& y, const S& force) const {
+  [[gnu::noinline]] S kink_margin_at(const Configuration<S>& configuration, const State& y, const S& force) const {
     if (!has_gear_loss(vehicle.motor)) return pitch_margin_at(configuration, y);
     if (has_load_free_friction()) return motion_by_every_law(configuration, y, force).gear_torque;
     return half * configuration.kinematics.crank_jacobian - vehicle.friction.radius +
@@ -93,46 +93,59 @@ struct HalfCycle {
     else gear = select<S>(side > S(0.0), force * half, S(1.0));
   }
 
-  /// The branch that holds is chosen on the spot.
-  [[gnu::always_inline]] Motion<S> motion_on_its_branch(const Configuration<S>& configuration, const State& y) const {
-    if (has_every_law) return motion_on_its_branch_by_every_law(configuration, y);
-    const MotionStateView instant = motion_state(configuration, y);
+  /// What the state's rates follow from, on the branch that holds, which is chosen on the spot.
+  struct Accelerations {
+    S crank;              ///< omega' [rad/s2]
+    S inductive_voltage;  ///< L_a di/dt [V]
+    S force_switch;       ///< as in Motion
+  };
+  [[gnu::always_inline]] Accelerations accelerations(const Configuration<S>& configuration, const State& y) const {
+    if (has_every_law) return accelerations_by_every_law(configuration, y);
+    const MotionStateView<S> instant = motion_state(configuration, y);
     const IntermediateTerms<S> terms = terms_at<false>(vehicle, instant, mode(S(1.0)));
-    return motion_on<false>(vehicle, instant, terms, mode(sign_of(terms.force_switch)));
+    return accelerations_of(motion_on<false>(vehicle, instant, terms, mode(sign_of(terms.force_switch))));
+  }
+  static Accelerations accelerations_of(const Motion<S>& m) {
+    return {m.crank_acceleration, m.inductive_voltage, m.force_switch};
+  }
+  /// The rates by crank angle.
+  State slope(const Accelerations& a, const State& y) const {
+    const S per_omega = inverse_of(y[0]);
+    State dy;
+    dy[0] = a.crank * per_omega;
+    if constexpr (N == 2) dy[1] = a.inductive_voltage * per_inductance * per_omega;
+    return dy;
   }
 
-  /// A MotionState without a copy of its configuration.
-  struct MotionStateView {
-    const Configuration<S>& configuration;
-    S omega, current, voltage;
-  };
-  [[gnu::always_inline]] MotionStateView motion_state(const Configuration<S>& configuration, const State& y) const {
+  [[gnu::always_inline]] MotionStateView<S> motion_state(const Configuration<S>& configuration, const State& y) const {
     const S i = current(y);
     return {configuration, y[0], i, terminal_voltage(vehicle, vehicle.voltage, i)};
   }
   template <bool every_law>
   [[gnu::always_inline]] Motion<S> motion_of(const Configuration<S>& configuration, const State& y,
                                              const S& force) const {
-    const MotionStateView instant = motion_state(configuration, y);
+    const MotionStateView<S> instant = motion_state(configuration, y);
     return motion_on<every_law>(vehicle, instant, terms_at<every_law>(vehicle, instant, mode(S(1.0))), mode(force));
   }
 
   // Out of the way of vehicles without: a call in the midst of an evaluation costs registers.
-  [[gnu::noinline]] Motion<S> motion_on_its_branch_by_every_law(const Configuration<S>& configuration,
-                                                                const State& y) const {
+  [[gnu::noinline]] Accelerations accelerations_by_every_law(const Configuration<S>& configuration,
+                                                             const State& y) const {
     HalfCycle branch = *this;
     branch.pitching = sign_of(pitch_margin_at(configuration, y));
-    const MotionStateView instant = motion_state(configuration, y);
+    const MotionStateView<S> instant = motion_state(configuration, y);
     const auto motion = [&] {
       const IntermediateTerms<S> terms = terms_at<true>(vehicle, instant, branch.mode(S(1.0)));
       return motion_on<true>(vehicle, instant, terms, branch.mode(sign_of(terms.force_switch)));
     };
     branch.gear = S(1.0);
     Motion<S> m = motion();
-    if (!has_gear_loss(vehicle.motor)) return m;
-    // As mode_at(): on one of its branches the torque on the gearbox has the sign of the branch.
-    branch.gear = sign_of(m.gear_torque);
-    return motion();
+    if (has_gear_loss(vehicle.motor)) {
+      // As mode_at(): on one of its branches the torque on the gearbox has the sign of the branch.
+      branch.gear = sign_of(m.gear_torque);
+      m = motion();
+    }
+    return accelerations_of(m);
   }
   [[gnu::noinline]] Motion<S> motion_by_every_law(const Configuration<S>& configuration, const State& y,
                                                   const S& force) const {
@@ -141,12 +154,11 @@ struct HalfCycle {
 
   template <bool quadratures>
   solver::Rates<HalfCycle> rates_of(const Motion<S>& m, const State& y, const S& force) const {
-    const S per_omega = inverse_of(y[0]);
     solver::Rates<HalfCycle> r;
-    r.dy[0] = m.crank_acceleration * per_omega;
-    if constexpr (N == 2) r.dy[1] = m.inductive_voltage * per_inductance * per_omega;
+    r.dy = slope(accelerations_of(m), y);
     r.switches[0] = m.force_switch;
     if constexpr (quadratures) {
+      const S per_omega = inverse_of(y[0]);
       const CycleIntegrals<S> in_time = integrands(m, y[0], mode(force));
       for (std::size_t q = 0; q < pack_integrals.size(); ++q) {
         r.dq[q] = in_time[std::size_t(pack_integrals[q])] * per_omega;

@@ -45,8 +45,6 @@ struct LaneMechanism {
     if (is_slider_crank) return crank_kinematics(slider, S(sin(angle)), S(cos(angle)));
     return kinematics_of_others(angle);
   }
-
- private:
   // Out of the way of slider-cranks: a call in the midst of an evaluation costs registers.
   [[gnu::noinline]] CrankKinematics<S> kinematics_of_others(const S& angle) const {
     if (transmission.type == TransmissionType::tabulated) return kinematics_at_angle(transmission.tabulated, angle);

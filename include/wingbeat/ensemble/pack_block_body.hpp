@@ -3,6 +3,7 @@
 
 #include <type_traits>
 
+#include "wingbeat/ensemble/block_vehicle.hpp"
 #include "wingbeat/ensemble/pack_blocks.hpp"
 #include "wingbeat/ensemble/pack_kinks.hpp"
 #include "wingbeat/ensemble/pack_lag.hpp"
@@ -30,7 +31,8 @@ void solve_block(const EnsembleMember* const* members, int count, const PackSett
   };
   const auto with_states = [&](auto states) {
     constexpr int N = decltype(states)::value;
-    Vehicle<L> vehicle = in_packs<L, Vehicle>([&](int lane) -> const Vehicle<double>& { return member(lane).vehicle; });
+    BlockVehicle<L> block([&](int lane) -> const Vehicle<double>& { return member(lane).vehicle; });
+    Vehicle<L>& vehicle = block.vehicle;
     const Vehicle<double>& first = member(0).vehicle;
     LaneTables<L>& tables = vehicle.wings.coefficients.table;
     tables.from_tables = bool(first.wings.coefficients.table);

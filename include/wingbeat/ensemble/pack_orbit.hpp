@@ -246,9 +246,9 @@ class PackOrbit {
   static Mask is_stiff(const Matrix& jacobian, const L& h);
   [[gnu::noinline, gnu::flatten]] static void find_rates(const System& system, const Configuration<L>& configuration,
                                                          const State& y, State& rates, L& force) {
-    const Motion<L> m = system.motion_on_its_branch(configuration, y);
-    force = m.force_switch;
-    rates = system.template rates_of<false>(m, y, L(1.0)).dy;
+    const typename System::Accelerations a = system.accelerations(configuration, y);
+    force = a.force_switch;
+    rates = system.slope(a, y);
   }
   template <class Rates>
   [[gnu::noinline]] State implicit_step(const State& y, const L& h, const Matrix& jacobian, const Rates& rates) const;

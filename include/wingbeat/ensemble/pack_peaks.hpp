@@ -321,7 +321,6 @@ L PackOrbit<L, N>::exchanged_energy() {
     std::array<L, max_energy_extremes> signs;
     L count(0.0), sign_before(0.0);  // sign of the slope where the subinterval before ends
     const auto add = [&](PeakBracket<L> b, const L& sign, const Mask& where) {
-      if (!any<L>(where)) return;
       for (L* part : {&b.v0, &b.d0, &b.v1, &b.d1}) *part = sign * *part;
       estimate_peak(b);
       for (std::size_t n = 0; n < max_energy_extremes; ++n) {
@@ -335,10 +334,13 @@ L PackOrbit<L, N>::exchanged_energy() {
       const L sign = sign_of(b.d0), sign_after = sign_of(b.d1);
       // Without air, the energy turns where the rod force changes its sign: a node, on either side of which rounding
       // gives the slope another sign.
-      PeakBracket<L> node = b;
-      node.x1 = b.x0, node.v1 = b.v0, node.d1 = b.d0;
-      add(node, sign_before, where && sign_before * sign < L(0.0));
-      add(b, sign, where && sign * sign_after < L(0.0));
+      const Mask turns_before = where && sign_before * sign < L(0.0), turns = where && sign * sign_after < L(0.0);
+      if (any<L>(turns_before)) {
+        PeakBracket<L> node = b;
+        node.x1 = b.x0, node.v1 = b.v0, node.d1 = b.d0;
+        add(node, sign_before, turns_before);
+      }
+      if (any<L>(turns)) add(b, sign, turns);
       sign_before = select<L>(where, sign_after, sign_before);
     });
     unresolved_ = unresolved_ || count > L(double(max_energy_extremes));

@@ -55,8 +55,8 @@ L PackOrbit<L, N>::guess_speed() {
     places[std::size_t(n)] = load_place(vehicle_, configuration.kinematics, configuration.spring_moment);
   }
   const System downward = half_cycle(1);
-  const OrbitGuess<L> guess =
-      guess_orbit(vehicle_, places, [&](const L& angle) { return downward.configuration(reach(1) - angle); });
+  const OrbitGuess<L> guess = guess_orbit(
+      vehicle_, places, [&](const L& angle) { return downward.configuration(reach(1) - angle); }, every_law_);
   y_[0] = guess.crank_speed;
   if constexpr (N == 2) y_[1] = algebraic_current(vehicle_, vehicle_.voltage, guess.earlier_speed);
   return guess.balanced.count;
@@ -97,14 +97,11 @@ void PackOrbit<L, N>::start_from_rest() {
     if constexpr (N == 2) y[1] = select<L>(at_once, algebraic_current(vehicle_, vehicle_.voltage, y[0]), y[1]);
     const CrankKinematics<L> k = mechanism_.kinematics(x[0]);
     system.half = sign_of(k.stroke_slope);
-    const Motion<L> m = system.motion_on_its_branch(system.configuration_of(k), y);
+    const typename System::Accelerations a = system.accelerations(system.configuration_of(k), y);
     Moving r;
     r[0] = y[0];
-    r[1] = m.crank_acceleration;
-    if constexpr (N == 2) {
-      const L rise = motor_loads(vehicle_.motor, m.voltage, y[1], y[0]).inductive_voltage * per_inductance_;
-      r[2] = select<L>(at_once, L(0.0), rise);
-    }
+    r[1] = a.crank;
+    if constexpr (N == 2) r[2] = select<L>(at_once, L(0.0), L(a.inductive_voltage * per_inductance_));
     return r;
   };
   const auto moved = [](const Moving& x, const Moving& rate, const L& by) {
@@ -285,10 +282,10 @@ void PackOrbit<L, N>::coarse_iterate() {
     };
     for (std::size_t k = 0; k + 2 < coarse_samples; k += 2) {
       const auto slope_at = [&](std::size_t sample, const State& y) {
-        const Motion<L> m = system.motion_on_its_branch(table[sample], y);
-        force[sample] = m.force_switch;
-        if (kinks_) margin[sample] = system.kink_margin_at(table[sample], y, sign_of(m.force_switch));
-        return system.template rates_of<false>(m, y, L(1.0)).dy;
+        const typename System::Accelerations a = system.accelerations(table[sample], y);
+        force[sample] = a.force_switch;
+        if (kinks_) margin[sample] = system.kink_margin_at(table[sample], y, sign_of(a.force_switch));
+        return system.slope(a, y);
       };
       const State k1 = slope_at(k, y_);
       Mask stiff = L(1.0) < L(0.0);

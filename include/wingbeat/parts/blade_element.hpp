@@ -220,7 +220,7 @@ template <Scalar S>
     }
   }
   const S along_the_flow = force_coefficients<true>(w.coefficients, S(0.0)).lift;
-  for (const WakeStrip<S>& strip : w.wake.strips.at) {
+  for (const WakeStrip<S>& strip : strips_of(w.wake).at) {
     add_strip_in_wake(w.coefficients, S(S(0.5) * w.air_density), strip,
                       strip_flow(w.wake.velocity, strip, stroke_speed), alpha, along_the_flow, clap, sum);
   }
@@ -318,6 +318,12 @@ template <bool every_law = true, Scalar S>
 template <Scalar S>
 [[gnu::always_inline]] inline AeroLoads<S> aero_loads(const BladeElement<S>& w, const S& stroke_speed) {
   return aero_loads(w, stroke_speed, S(1.0), pitch_margin(w, stroke_speed));
+}
+
+/// The moment of these loads [N m], out of the way of wings without further laws.
+template <Scalar S>
+[[gnu::noinline]] S moment_by_every_law(const BladeElement<S>& w, const S& stroke_speed) {
+  return aero_loads(w, stroke_speed).moment;
 }
 
 /// The stroke speed |beta'| [rad/s] at which passive pitching without a stop brings the angle of attack down to alpha

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
 
 #include "wingbeat/core/math.hpp"
 #include "wingbeat/core/range.hpp"
@@ -15,6 +16,7 @@ namespace wingbeat {
 /// blocks, i = 0; at the current limit the voltage at the terminals follows so that \f$i = i_\mathrm{max}\f$.
 template <Scalar S>
 struct Electronics {
+  static constexpr bool off_lanes = true;
   S efficiency = S(1);          ///< eta_esc [1], > 0, <= 1
   S current_max = S(infinity);  ///< i_max of all motors together [A], > 0
   bool regenerates = true;      ///< current may flow back; false of a brushless motor
@@ -35,6 +37,12 @@ inline constexpr ParameterKey current_max{"electronics.current_max", "A", range:
 template <Scalar S>
 bool limits_current(const Electronics<S>& e) {
   return !e.regenerates || std::isfinite(value_of(e.current_max));
+}
+
+/// Lanes know of none.
+template <Scalar S>
+S current_within(std::nullptr_t, const S& i) {
+  return i;
 }
 
 /// A steady current [A] as the electronics let it flow.

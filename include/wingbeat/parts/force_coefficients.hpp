@@ -132,6 +132,15 @@ S tangential_coefficient(const S& alpha) {
   return select<S>(abs(alpha) < S(0.25 * pi), square(S(cos(S(S(2.0) * alpha)))), S(0.0));
 }
 
+/// The sine of C_L and the cosine of C_D [1] at angle of attack alpha [rad].
+template <Scalar S>
+[[gnu::always_inline]] inline LiftAndDrag<S> coefficient_waves(const ForceCoefficients<S>& c, const S& alpha) {
+  using std::cos;
+  using std::sin;
+  return {c.lift.offset + c.lift.amplitude * sin(c.lift.rate * alpha + c.lift.phase),
+          c.drag.offset + c.drag.amplitude * cos(c.drag.rate * alpha + c.drag.phase)};
+}
+
 /// C_L [1] (eq 12) at angle of attack alpha [rad]: a sine of CoefficientWave, less the share of a force along the
 /// chord, or the table's spline.
 /// \f[
@@ -144,7 +153,7 @@ S lift_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   if constexpr (ScalarTraits<S>::reads_tables) {
     if (c.table) return detail::evaluate_table([&](double x) { return c.table->lift_piece(x); }, alpha);
   }
-  const S wave = c.lift.offset + c.lift.amplitude * sin(c.lift.rate * alpha + c.lift.phase);
+  const S wave = coefficient_waves(c, alpha).lift;
   if (!acts(c.tangential)) return wave;
   return wave - c.tangential * tangential_coefficient(alpha) * sin(alpha);
 }
@@ -161,18 +170,31 @@ S drag_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   if constexpr (ScalarTraits<S>::reads_tables) {
     if (c.table) return detail::evaluate_table([&](double x) { return c.table->drag_piece(x); }, alpha);
   }
-  const S wave = c.drag.offset + c.drag.amplitude * cos(c.drag.rate * alpha + c.drag.phase);
+  const S wave = coefficient_waves(c, alpha).drag;
   if (!acts(c.tangential)) return wave;
   return wave + c.tangential * tangential_coefficient(alpha) * cos(alpha);
 }
 
-/// Both at once. Without `every_law` lanes have no tables.
+namespace detail {
+
+// Out of the way of vehicles with waves alone.
+template <Scalar S>
+[[gnu::noinline]] LiftAndDrag<S> coefficients_by_every_law(const ForceCoefficients<S>& c, const S& alpha) {
+  return {lift_coefficient(c, alpha), drag_coefficient(c, alpha)};
+}
+
+}  // namespace detail
+
+/// Both at once. Without `every_law` lanes have neither tables nor forces along the chord.
 template <bool every_law, Scalar S>
 [[gnu::always_inline]] inline LiftAndDrag<S> force_coefficients(const ForceCoefficients<S>& c, const S& alpha) {
-  if constexpr (!ScalarTraits<S>::reads_tables && every_law) {
+  if constexpr (ScalarTraits<S>::reads_tables) {
+    if (c.table || acts(c.tangential)) return detail::coefficients_by_every_law(c, alpha);
+  } else if constexpr (every_law) {
     if (c.table.from_tables) return detail::read_tables(c.table, alpha);
+    if (acts(c.tangential)) return detail::coefficients_by_every_law(c, alpha);
   }
-  return {lift_coefficient(c, alpha), drag_coefficient(c, alpha)};
+  return coefficient_waves(c, alpha);
 }
 
 }  // namespace wingbeat

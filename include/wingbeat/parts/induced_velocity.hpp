@@ -34,6 +34,7 @@ inline constexpr std::size_t wake_strip_count = 16;
 /// The strips that lift, nodes of a quadrature along the span.
 template <Scalar S>
 struct WakeStrips {
+  static constexpr bool off_lanes = true;
   std::array<WakeStrip<S>, wake_strip_count> at;
 
   template <class Self, class Use>
@@ -49,13 +50,20 @@ struct InducedVelocity {
   S share = S(0);       ///< \f$\kappa\f$ of the momentum theory's that counts [1], 0 to 1
   S sector = S(0);      ///< swept area over the stroke amplitude, \f$N_\mathrm{w} (R + d)^2\f$ [m2/rad]
   S swept_area = S(0);  ///< A_0 where it is stated [m2]; else 0
-  WakeStrips<S> strips;
+  /// On lanes those of the block, where any has a wake.
+  std::conditional_t<ScalarTraits<S>::reads_tables, WakeStrips<S>, const WakeStrips<S>*> strips{};
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.velocity, self.share, self.sector, self.swept_area, self.strips);
   }
 };
+
+template <Scalar S>
+const WakeStrips<S>& strips_of(const InducedVelocity<S>& w) {
+  if constexpr (ScalarTraits<S>::reads_tables) return w.strips;
+  else return *w.strips;
+}
 
 /// Keys, units and ranges; the table of parameters has them from here.
 namespace induced_velocity_key {

@@ -20,6 +20,7 @@ namespace wingbeat {
 /// \f$F_\mathrm{t} = k_\mathrm{s} (x - x_\mathrm{t})\f$; without one \f$x = x_\mathrm{t}\f$.
 template <Scalar S>
 struct Piezo {
+  static constexpr bool off_lanes = true;
   S force_per_volt = S(0);      ///< kappa [N/V], > 0; 0: no piezo moves the wings
   S voltage_factor = S(0);      ///< kappa_1 [1/V], >= 0
   S stiffness = S(0);           ///< k_a [N/m], > 0

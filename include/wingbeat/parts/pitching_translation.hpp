@@ -86,6 +86,7 @@ PitchAddedMass<S> pitch_added_mass(const S& air_density, const PitchChordMoments
 /// force coefficients are taken.
 template <Scalar S>
 struct PitchingWings {
+  static constexpr bool off_lanes = true;
   PitchHinge<S> hinge;  ///< all hinges together
   /// N_w I_psi = N_w integral x^2 dm, x from the axis along the chord [kg m2], > 0; 0 where the wings do not pitch so
   S pitch_inertia = S(0);

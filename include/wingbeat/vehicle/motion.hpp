@@ -107,6 +107,13 @@ struct MotionState {
   S pitch_velocity = S(0.0);  ///< psi' [rad/s]
 };
 
+/// A MotionState of wings under the pitch law without a copy of its configuration.
+template <Scalar S>
+struct MotionStateView {
+  const Configuration<S>& configuration;
+  S omega, current, voltage;
+};
+
 /// What a stroke is to its drive, springs apart: the wings ask for the moment (inertia) beta'' + moment.
 template <Scalar S>
 struct StrokeLoads {
@@ -124,7 +131,7 @@ bool jumps_at_pitch_stop(const V<S>& v) {
 
 /// clap_factor() at an instant of these signs; lanes have no wings that clap.
 template <template <Scalar> class V, Scalar S>
-S clap_factor(const V<S>& v, const Configuration<S>& configuration, const Mode<S>& mode) {
+[[gnu::always_inline]] inline S clap_factor(const V<S>& v, const Configuration<S>& configuration, const Mode<S>& mode) {
   if constexpr (ScalarTraits<S>::reads_tables) {
     if (claps(v.wings.clap)) return clap_factor(v.wings.clap, configuration.stroke_angle, mode.stroke);
   }

@@ -36,18 +36,19 @@ struct Vehicle {
   S wing_count;    ///< N_w, of all motors
   S wing_inertia;  ///< \f$J_\mathrm{w}\f$ of one wing [kg m2]; 0 when wingless
   BladeElement<S> wings;
-  S source_resistance = S(0);  ///< R_i inside the supply [ohm], >= 0: the terminals see v - R_i i
-  S drive_frequency = S(0);    ///< of a sine supply, whose amplitude is `voltage` [Hz]; else 0
-  MotorThermal<S> thermal;     ///< what changes `motor` where it heats up; see with_motor_at()
-  S motors = S(1);             ///< M: rod forces are reported of one of so many rods
-  PitchingWings<S> pitch;      ///< of wings whose pitch is a degree of freedom; see pitches()
+  S source_resistance = S(0);          ///< R_i inside the supply [ohm], >= 0: the terminals see v - R_i i
+  S drive_frequency = S(0);            ///< of a sine supply, whose amplitude is `voltage` [Hz]; else 0
+  MotorThermal<S> thermal;             ///< what changes `motor` where it heats up; see with_motor_at()
+  S motors = S(1);                     ///< M: rod forces are reported of one of so many rods
+  OffLanes<PitchingWings, S> pitch{};  ///< of wings whose pitch is a degree of freedom; see pitches()
   /// T_x that a load outside the vehicle takes from crank or shaft, against a positive speed [N m]; no design states
   /// one. SIMD packs do not know it.
   S load_torque = S(0);
   WingLimits<S> wing_limits;  ///< beyond which the wings or their coefficients are no longer what the equations say
   S voltage_offset = S(0);    ///< V_0 of a sine supply [V]
-  Electronics<S> electronics;
-  Piezo<S> piezo;  ///< in place of the motor, of which `motor` then has inertia and damping, about stroke angle zero
+  OffLanes<Electronics, S> electronics{};
+  OffLanes<Piezo, S>
+      piezo{};  ///< in place of the motor, of which `motor` then has inertia and damping, about stroke angle zero
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
