@@ -22,10 +22,11 @@ double resistance(const Vehicle<double>& v, double speed) {
   return 2.0 * sum / samples + v.motor.viscous_damping * speed;
 }
 
-/// Half of what a piezo's force on a shaft that stands changes by within a period [N]. A compliant transmission passes
-/// on what the bent series stiffness takes of it, the tip swinging:
+/// Amplitude of a piezo's force on a shaft that stands [N]: half of what \f$F = \kappa(V) V\f$ changes by within a
+/// period. A compliant transmission passes on its share of that, the tip swinging:
 /// \f[
 /// \frac{k_\mathrm{s}}{|k_\mathrm{a} + k_\mathrm{s} - m_\mathrm{a} w^2 + \mathrm{j} w c_\mathrm{a}|}
+/// \cdot \frac{F(V_0 + V) - F(V_0 - V)}{2}
 /// \f]
 double alternating_force(const Vehicle<double>& v, double w) {
   const Piezo<double>& p = v.piezo;
@@ -52,8 +53,8 @@ DirectBalance direct_balance(const Vehicle<double>& v) {
   const double inertia = m.inertia + v.wing_count * v.wing_inertia;
   const double reactance = w * inertia - (v.wing_count * v.spring.stiffness + own_stiffness) / w;
 
-  DirectBalance balance{piezo ? alternating_force(v, w) * per_ratio : std::abs(drive), breakaway_torque(v), {}};
   const double push = std::abs(drive);
+  DirectBalance balance{piezo ? alternating_force(v, w) * per_ratio : push, breakaway_torque(v), {}};
   // |Z(Omega)| Omega = K V / |R_a + j w L_a|; the left side grows with Omega unless drag falls with speed.
   const auto impedance = [&](double speed) { return resistance(v, speed) / speed + j * reactance + from_motor; };
   const auto surplus = [&](double speed) { return push - std::abs(impedance(speed)) * speed; };

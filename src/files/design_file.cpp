@@ -115,11 +115,11 @@ class Reader {
   struct Reported {};
 
   template <class Do>
-  void attempt(const Do& act) {
+  bool attempt(const Do& act) {
     try {
-      errors_.attempt(act);
+      return errors_.attempt(act);
     } catch (const Reported&) {
-      // Nothing to add.
+      return false;  // nothing to add
     }
   }
 
@@ -246,17 +246,24 @@ class Reader {
   }
 
   void read_numbers(Design<double>& d) {
+    std::string_view unread;  // section of a number that could not be read: it may decide what applies there
     for (const auto& key : parameter_table<double>()) {
-      attempt([&] {
+      const std::string_view section = key.path.substr(0, key.path.rfind('.'));
+      std::optional<double> number;
+      const bool accepted = attempt([&] {
         if (!belongs(key) || !key.set) return;
         if (const Value* value = document_.find(key.path)) {
-          const double number = number_of(*value, *value, key.path, key.unit);
-          if (!key.set(d, number)) value->origin.refuse(std::string(key.path), "does not apply to this vehicle");
-          check_range(*value, key, number);
+          number = number_of(*value, *value, key.path, key.unit);
+          if (!key.set(d, *number)) {
+            if (section == unread) return;
+            value->origin.refuse(std::string(key.path), "does not apply to this vehicle");
+          }
+          check_range(*value, key, *number);
         } else if (is_required(key)) {
           missing(key.path, quantity_example(key.unit));
         }
       });
+      if (!accepted && !number) unread = section;
     }
   }
 

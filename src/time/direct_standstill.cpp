@@ -50,29 +50,30 @@ bool DirectStartUp::rests_for_good() {
   const StandingTorques<double> torques = model_.standing_torques(now_.moving.angle);
   const double hold = torques.friction(), torque = largest_torque(torques.middle());
   if (now_.stuck && !no_drive) {
-    // A tip that still swings may break the shaft away; if it does not, a steady period shows it.
-    const bool tip_rests = !is_given(model_.vehicle.piezo) || !is_compliant(model_.vehicle.piezo);
-    if ((torque > hold || !tip_rests) && model_.wings_rest()) return false;
+    // The tip of a compliant piezo that still swings may break the shaft away; if not, a steady period shows it.
+    const bool tip_swings = is_given(model_.vehicle.piezo) && is_compliant(model_.vehicle.piezo);
+    if ((torque > hold || tip_swings) && model_.wings_rest()) return false;
     if (!model_.wings_rest()) {
       if (stuck_until_ == infinity) stuck_until_ = shaken_until();
       if (now_.t < stuck_until_) return false;
     }
   }
   if (now_.stuck) {
-    stand(torque, hold);
+    decide_held(torque, hold);
   } else {
-    stall(0.0, {.kind = Evidence::no_voltage});
+    decide_stalled(0.0, {.kind = Evidence::no_voltage});
   }
   return true;
 }
 
 /// The decision that friction `hold` keeps the shaft where it stands against `torque` [N m].
-void DirectStartUp::stand(double torque, double hold) {
-  stall(std::max(0.0, hold - torque),
-        {.kind = Evidence::held_shaft, .angle = now_.moving.angle, .torque = torque, .friction_torque = hold});
+void DirectStartUp::decide_held(double torque, double hold) {
+  decide_stalled(std::max(0.0, hold - torque),
+                 {.kind = Evidence::held_shaft, .angle = now_.moving.angle, .torque = torque, .friction_torque = hold});
 }
 
-void DirectStartUp::stall(double margin, StatusEvidence why) {
+/// `margin`: what friction could hold beyond that [N m].
+void DirectStartUp::decide_stalled(double margin, StatusEvidence why) {
   decide(FlappingStatus::stalled);
   result_.time_to_steady = now_.t;
   result_.lock_angle = now_.moving.angle;
@@ -98,11 +99,11 @@ bool DirectStartUp::creeps_to_rest() {
   last_travel_ = travel;
   travel_[0] = travel_[1] = 0.0;
   if (creeping_ < creep_periods) return false;
-  stall(model_.constant_friction - model_.drive_torque, {.kind = Evidence::creeping_shaft,
-                                                         .angle = now_.moving.angle,
-                                                         .torque = model_.drive_torque,
-                                                         .friction_torque = model_.constant_friction,
-                                                         .travel = travel});
+  decide_stalled(model_.constant_friction - model_.drive_torque, {.kind = Evidence::creeping_shaft,
+                                                                  .angle = now_.moving.angle,
+                                                                  .torque = model_.drive_torque,
+                                                                  .friction_torque = model_.constant_friction,
+                                                                  .travel = travel});
   return true;
 }
 

@@ -206,11 +206,11 @@ void DirectStartUp::period_done() {
     const bool balances = closes(audit, options_.tolerance, 0.0, blocked_input(model_.vehicle));
     const bool settled = ((close || change < noise) && agree) || periods_at_tightest_ > 40;
     if (settled && !balances && tightest) return give_up_open_balance(audit);
-    if (settled && balances && now_.stuck && last_travel_ == 0.0) {
-      const StandingTorques<double> torques = model_.standing_torques(now_.moving.angle);
-      return stand(largest_torque(torques.middle()), torques.friction());
-    }
     if (settled && balances) {
+      if (now_.stuck && last_travel_ == 0.0) {
+        const StandingTorques<double> torques = model_.standing_torques(now_.moving.angle);
+        return decide_held(largest_torque(torques.middle()), torques.friction());
+      }
       settle(std::min(off, change / (1.0 - std::min(rate, 0.999))), change);
       return;
     }

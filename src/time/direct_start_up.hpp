@@ -27,8 +27,8 @@ class DirectStartUp : public StartUpRun {
   double largest_torque(double middle) const;
   bool wings_are_still() const;
   bool rests_for_good();
-  void stand(double torque, double hold);
-  void stall(double margin, StatusEvidence why);
+  void decide_held(double torque, double hold);
+  void decide_stalled(double margin, StatusEvidence why);
   bool creeps_to_rest();
   double periods_skipped(std::size_t first) const;
   bool shaft_returns() const;

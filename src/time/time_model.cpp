@@ -150,7 +150,11 @@ void TimeModel::scale_direct(double highest_voltage) {
   angle_scale = std::max(speed_scale / natural, beta);
   torque_scale = balance.drive_torque;
   current_scale = std::max(typical_current(at_highest, balance), std::abs(start_.current));
-  if (!is_given(vehicle.piezo)) {
+  if (is_given(vehicle.piezo)) {
+    // Without capacitance, and where constant friction leaves no harmonic response, the typical current is 0.
+    const double charge_rate = vehicle.piezo.force_per_volt * speed_scale / vehicle.piezo.transmission_ratio;
+    current_scale = std::max(current_scale, 1e-3 * charge_rate);
+  } else {
     current_scale = std::max(current_scale, 1e-3 * m.torque_constant * speed_scale / m.armature_resistance);
     torque_scale = m.torque_constant * current_scale;
     mechanical_time = inertia * circuit_resistance(vehicle) /

@@ -154,6 +154,20 @@ TEST(DesignErrors, WrongDimensionOrUnit) {
             "with a number");
 }
 
+// It decides whether the rest of its section applies, of which nothing is said then.
+TEST(DesignErrors, AForcePerVoltThatCannotBeRead) {
+  std::string text = read_text_file(designs / "robobee-piezo.toml");
+  const std::string stated = "\"1.150 mN/V\"";
+  text.replace(text.find(stated), stated.size(), "\"1.150 mN\"");
+  try {
+    parse_design(text, "v.toml");
+    FAIL() << "accepted";
+  } catch (const InputError& error) {
+    EXPECT_EQ(error.key(), "piezo.force_per_volt");
+    for (const InputError& other : error.others()) ADD_FAILURE() << other.what();
+  }
+}
+
 TEST(DesignErrors, OutOfRange) {
   EXPECT_EQ(refusal(with("\"9 ohm\"", "\"-9 ohm\"")),
             "v.toml:7:1: motor.armature_resistance: must be > 0 [ohm], got -9");

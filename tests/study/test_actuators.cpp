@@ -179,6 +179,8 @@ TEST(Actuators, FrictionHoldsAPiezoWhoseVoltageAlternatesTooLittle) {
       EXPECT_EQ(held_in_time.status, FlappingStatus::stalled) << describe(held_in_time.evidence);
       EXPECT_EQ(held.evidence.kind, StatusEvidence::Kind::weak_alternation);
       EXPECT_NE(held_in_time.lock_angle, 0.0);
+      d.friction = {FrictionLaw::constant, 0.9 * torque};
+      EXPECT_TRUE(expect_orbit_as_simulated(d, int(series)).flaps);
     }
   }
 }

@@ -90,12 +90,13 @@ struct StrokeLawVehicle {
   S motors = S(1);
   S load_torque = S(0);
   WingLimits<S> wing_limits = {};
+  Electronics<S> electronics = {};
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
     return use(self.voltage, self.motor, self.transmission, self.friction, self.spring, self.wing_count,
                self.wing_inertia, self.wings, self.source_resistance, self.drive_frequency, self.thermal, self.motors,
-               self.load_torque, self.wing_limits);
+               self.load_torque, self.wing_limits, self.electronics);
   }
 };
 

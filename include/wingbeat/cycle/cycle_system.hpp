@@ -337,33 +337,27 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
     else return compact_instant(place, y, signs);
   }
   template <class At>
-  [[gnu::always_inline]] MotionState<S> compact_instant(const At& place, const State& y,
-                                                        [[maybe_unused]] const Signs& signs) const {
+  [[gnu::always_inline]] auto compact_instant(const At& place, const State& y,
+                                              [[maybe_unused]] const Signs& signs) const {
     if constexpr (turns) {
       const S i = current(S(0.0), y), v_t = terminal_voltage(vehicle, vehicle.voltage, i);
-      if constexpr (on_hinges) return {place, y[shaft], i, v_t, y[pitch], pitch_velocity(y, signs)};
-      else return {place, y[shaft], i, v_t};
+      if constexpr (!on_hinges) return MotionStateView<S>{place, y[shaft], i, v_t};
+      else return MotionState<S>{place, y[shaft], i, v_t, y[pitch], pitch_velocity(y, signs)};
     } else {
       const Configuration<S> here{direct_kinematics(vehicle.transmission.direct),
                                   vehicle.wing_count * vehicle.spring.stiffness * (y[0] - vehicle.spring.rest_angle),
                                   y[0]};
       const S omega = value_of(signs[slip]) < 0.0 ? S(0.0) : y[shaft];
       const S i = current(place, y), v_t = terminal_voltage(vehicle, voltage(place), i);
-      if constexpr (on_hinges) return {here, omega, i, v_t, y[pitch], pitch_velocity(y, signs)};
-      else return {here, omega, i, v_t};
+      if constexpr (!on_hinges) return MotionState<S>{here, omega, i, v_t};
+      else return MotionState<S>{here, omega, i, v_t, y[pitch], pitch_velocity(y, signs)};
     }
   }
 
   [[gnu::always_inline]] MotionHere motion(const Configuration<S>& place, const State& y, const Signs& signs) const
     requires(features_.turns && !features_.general)
   {
-    if constexpr (on_hinges) {
-      return motion_of(instant(place, y, signs), mode(signs));
-    } else {
-      const S i = current(S(0.0), y);
-      return motion_of(MotionStateView<S>{place, y[shaft], i, terminal_voltage(vehicle, vehicle.voltage, i)},
-                       mode(signs));
-    }
+    return motion_of(instant(place, y, signs), mode(signs));
   }
   [[gnu::always_inline]] MotionHere motion(const S& x, const State& y, const Signs& signs) const {
     if constexpr (turns && !general) return motion(configuration(x), y, signs);
@@ -371,15 +365,8 @@ struct CycleSystem : CycleLayout<features_>, std::conditional_t<features_.turns,
   }
 
   CycleExtremes<S> candidates(const Motion<S>& m, const State& y, const Signs& signs) const {
-    CycleExtremes<S> values;
-    if constexpr (turns) values = extreme_candidates(m, y[shaft], mode(signs));
-    else values = extreme_candidates(m, m.stroke_velocity, mode(signs), y[0]);
-    // The place where a current meets its limit is known less well than the limit.
-    if constexpr (general) {
-      S& current = values[std::size_t(Extreme::current)];
-      current = current_within(vehicle.electronics, current);
-    }
-    return values;
+    if constexpr (turns) return extreme_candidates(m, y[shaft], mode(signs));
+    else return extreme_candidates(m, m.stroke_velocity, mode(signs), y[0]);
   }
 
   template <bool quadratures>

@@ -19,7 +19,7 @@ struct HarmonicResponse {
 
 struct DirectBalance {
   /// Amplitude of the torque on a shaft that stands still [N m]:
-  /// \f$K V / |R_\mathrm{a} + \mathrm{j} w L_\mathrm{a}|\f$, of a piezo half of what its force changes by over T'.
+  /// \f$K V / |R_\mathrm{a} + \mathrm{j} w L_\mathrm{a}|\f$, of a piezo that of its force over T'.
   double drive_torque;
   double breakaway_torque;  ///< T_c, the constant friction that holds the shaft [N m]
   /// Responses in which drag and friction are replaced by the viscous damping that takes the same power from a harmonic

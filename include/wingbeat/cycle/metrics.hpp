@@ -137,7 +137,8 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   m[Metric::frequency] = f;
   m[Metric::current_mean] = f * total(Integral::current);
   m[Metric::voltage] = terminal_voltage(v, v.voltage, m[Metric::current_mean]);
-  m[Metric::current_peak] = peak(Extreme::current);
+  // The instant at which a current meets its limit is known less well than the limit.
+  m[Metric::current_peak] = current_within(v.electronics, peak(Extreme::current));
   using std::sqrt;
   const S current_square = f * total(Integral::current_square);
   const auto carries_current = current_square > S(0.0);

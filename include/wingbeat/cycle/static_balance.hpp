@@ -123,11 +123,10 @@ LoadPlace<S> load_place(const V<S>& v, const CrankKinematics<S>& k, const S& N_k
 /// - \overline{F h + \mu r_\mathrm{e} |F|} - T_\mathrm{x}, \qquad
 /// F = \frac{N_\mathrm{w} J_\mathrm{w} B_2 \omega^2 + M_\mathrm{aero} + N_\mathrm{w} k \beta}{g}
 /// \f]
-///
-/// `every_law` as in aero_loads().
 template <template <Scalar> class V, Scalar S>
-S torque_surplus(const V<S>& v, std::span<const LoadPlace<S>> places, const S& omega, bool every_law = true) {
+S torque_surplus(const V<S>& v, std::span<const LoadPlace<S>> places, const S& omega) {
   using std::abs;
+  const bool every_law = has_further_laws(v.wings);
   S load(0.0);
   for (const LoadPlace<S>& p : places) {
     const S speed = p.slope * omega;
@@ -164,11 +163,10 @@ S largest_pitch(const V<S>& v, std::span<const LoadPlace<S>> places, const S& om
 /// Balances between 2 % of the speed without load and that speed, on a grid, without springs from standstill on. A
 /// surplus that is almost used up counts as a balance, too.
 template <int speeds, template <Scalar> class V, Scalar S>
-BalancedSpeed<S> balanced_on_grid(const V<S>& v, std::span<const LoadPlace<S>> places, bool every_law) {
+BalancedSpeed<S> balanced_on_grid(const V<S>& v, std::span<const LoadPlace<S>> places) {
   const S no_load = no_load_speed(v), near = S(0.1) * stall_torque(v);
   BalancedSpeed<S> balanced{no_load, S(0.0), S(0.0)};
-  S before = S(0.02) * no_load, surplus_before = torque_surplus(v, places, before, every_law);
-  S surplus_earlier = surplus_before;
+  S before = S(0.02) * no_load, surplus_before = torque_surplus(v, places, before), surplus_earlier = surplus_before;
   auto found = S(0.0) > S(0.0);
   const auto note_balance = [&](const S& below, const S& surplus_below, const S& omega, const S& surplus) {
     const auto crossed = surplus_below > S(0.0) && surplus <= S(0.0);
@@ -182,11 +180,11 @@ BalancedSpeed<S> balanced_on_grid(const V<S>& v, std::span<const LoadPlace<S>> p
   // What keeps a slow crank turning against springs is not their mean torque.
   const auto creeps = v.spring.stiffness == S(0.0) && surplus_before <= S(0.0);
   if (any<S>(creeps)) {
-    const S from_standstill = select<S>(creeps, torque_surplus(v, places, S(0.0), every_law), S(0.0));
+    const S from_standstill = select<S>(creeps, torque_surplus(v, places, S(0.0)), S(0.0));
     note_balance(S(0.0), from_standstill, before, surplus_before);
   }
   for (int n = 1; n <= speeds; ++n) {
-    const S omega = no_load * S(double(n) / speeds), surplus = torque_surplus(v, places, omega, every_law);
+    const S omega = no_load * S(double(n) / speeds), surplus = torque_surplus(v, places, omega);
     note_balance(before, surplus_before, omega, surplus);
     if (n > 1) {
       const auto touches = surplus_before > S(0.0) && surplus_before < near && surplus_before < surplus_earlier &&
@@ -204,15 +202,14 @@ BalancedSpeed<S> balanced_on_grid(const V<S>& v, std::span<const LoadPlace<S>> p
 inline constexpr double far_pitch = 1.2;
 
 template <template <Scalar> class V, Scalar S>
-BalancedSpeed<S> balanced_speed(const V<S>& v, std::span<const LoadPlace<std::type_identity_t<S>>> places,
-                                bool every_law = true) {
+BalancedSpeed<S> balanced_speed(const V<S>& v, std::span<const LoadPlace<std::type_identity_t<S>>> places) {
   // The drag coefficient is a wave in the angle of attack: over a long way of pitching the drag's torque has several
   // humps, and beyond a longer one no grid is fine enough.
   const S pitch = largest_pitch(v, places, no_load_speed(v));
-  BalancedSpeed<S> balanced = balanced_on_grid<8>(v, places, every_law);
+  BalancedSpeed<S> balanced = balanced_on_grid<8>(v, places);
   const auto steep = pitch > S(far_pitch);
   if (any<S>(steep)) {
-    const BalancedSpeed<S> finely = balanced_on_grid<40>(v, places, every_law);
+    const BalancedSpeed<S> finely = balanced_on_grid<40>(v, places);
     balanced.slowest = select<S>(steep, finely.slowest, balanced.slowest);
     balanced.slope = select<S>(steep, finely.slope, balanced.slope);
     balanced.count = select<S>(steep, finely.count, balanced.count);
@@ -256,16 +253,15 @@ struct OrbitGuess {
                     ///< nothing balances
 };
 
-/// `before(angle)` is the Configuration at an angle [rad] before the one that the cycle starts at, `every_law` as in
-/// aero_loads().
+/// `before(angle)` is the Configuration at an angle [rad] before the one that the cycle starts at.
 template <template <Scalar> class V, Scalar S, class Before>
 OrbitGuess<S> guess_orbit(const V<S>& v, std::span<const LoadPlace<std::type_identity_t<S>>> places,
-                          const Before& before, bool every_law = true) {
+                          const Before& before) {
   using std::exp;
   using std::max;
   using std::min;
   using std::sqrt;
-  OrbitGuess<S> guess{balanced_speed(v, places, every_law), S(0.0), S(0.0), S(1.0)};
+  OrbitGuess<S> guess{balanced_speed(v, places), S(0.0), S(0.0), S(1.0)};
   const S balanced = guess.balanced.slowest;
   guess.crank_speed = guess.earlier_speed = balanced;
   if (places.empty()) return guess;

@@ -109,8 +109,7 @@ struct HalfCycle {
     return {m.crank_acceleration, m.inductive_voltage, m.force_switch};
   }
   /// The rates by crank angle.
-  State slope(const Accelerations& a, const State& y) const {
-    const S per_omega = inverse_of(y[0]);
+  State slope(const Accelerations& a, const S& per_omega) const {
     State dy;
     dy[0] = a.crank * per_omega;
     if constexpr (N == 2) dy[1] = a.inductive_voltage * per_inductance * per_omega;
@@ -154,11 +153,11 @@ struct HalfCycle {
 
   template <bool quadratures>
   solver::Rates<HalfCycle> rates_of(const Motion<S>& m, const State& y, const S& force) const {
+    const S per_omega = inverse_of(y[0]);
     solver::Rates<HalfCycle> r;
-    r.dy = slope(accelerations_of(m), y);
+    r.dy = slope(accelerations_of(m), per_omega);
     r.switches[0] = m.force_switch;
     if constexpr (quadratures) {
-      const S per_omega = inverse_of(y[0]);
       const CycleIntegrals<S> in_time = integrands(m, y[0], mode(force));
       for (std::size_t q = 0; q < pack_integrals.size(); ++q) {
         r.dq[q] = in_time[std::size_t(pack_integrals[q])] * per_omega;

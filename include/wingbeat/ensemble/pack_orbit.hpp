@@ -102,8 +102,7 @@ class PackOrbit {
     has_knots_ =
         vehicle.wings.coefficients.table.from_tables || vehicle.transmission.type == TransmissionType::tabulated;
     adds_mass_ = any<L>(vehicle.wings.added_inertia > L(0.0));
-    every_law_ = kinks_ || adds_mass_ || has_wake(vehicle.wings) || any<L>(vehicle.wings.tip.s3 > L(0.0)) ||
-                 any<L>(vehicle.wings.coefficients.tangential > L(0.0));
+    every_law_ = loses_in_gear_ || has_further_laws(vehicle.wings);
     in_one_piece_ = settings.in_one_piece;
     lags_ = N == 1 && settings.current == PackCurrent::lagging;
     if (N == 2 || lags_) per_inductance_ = L(1.0) / vehicle.motor.armature_inductance;
@@ -248,7 +247,7 @@ class PackOrbit {
                                                          const State& y, State& rates, L& force) {
     const typename System::Accelerations a = system.accelerations(configuration, y);
     force = a.force_switch;
-    rates = system.slope(a, y);
+    rates = system.slope(a, inverse_of(y[0]));
   }
   template <class Rates>
   [[gnu::noinline]] State implicit_step(const State& y, const L& h, const Matrix& jacobian, const Rates& rates) const;

@@ -55,8 +55,8 @@ L PackOrbit<L, N>::guess_speed() {
     places[std::size_t(n)] = load_place(vehicle_, configuration.kinematics, configuration.spring_moment);
   }
   const System downward = half_cycle(1);
-  const OrbitGuess<L> guess = guess_orbit(
-      vehicle_, places, [&](const L& angle) { return downward.configuration(reach(1) - angle); }, every_law_);
+  const OrbitGuess<L> guess =
+      guess_orbit(vehicle_, places, [&](const L& angle) { return downward.configuration(reach(1) - angle); });
   y_[0] = guess.crank_speed;
   if constexpr (N == 2) y_[1] = algebraic_current(vehicle_, vehicle_.voltage, guess.earlier_speed);
   return guess.balanced.count;
@@ -285,7 +285,7 @@ void PackOrbit<L, N>::coarse_iterate() {
         const typename System::Accelerations a = system.accelerations(table[sample], y);
         force[sample] = a.force_switch;
         if (kinks_) margin[sample] = system.kink_margin_at(table[sample], y, sign_of(a.force_switch));
-        return system.slope(a, y);
+        return system.slope(a, inverse_of(y[0]));
       };
       const State k1 = slope_at(k, y_);
       Mask stiff = L(1.0) < L(0.0);

@@ -320,6 +320,13 @@ template <Scalar S>
   return aero_loads(w, stroke_speed, S(1.0), pitch_margin(w, stroke_speed));
 }
 
+/// Whether more than waves of coefficients acts, so that lanes need `every_law` of aero_loads(); of scalars always.
+template <Scalar S>
+bool has_further_laws(const BladeElement<S>& w) {
+  if constexpr (ScalarTraits<S>::reads_tables) return true;
+  return kinks_on_lanes(w) || acts(w.added_inertia) || has_wake(w) || acts(w.tip.s3) || acts(w.coefficients.tangential);
+}
+
 /// The moment of these loads [N m], out of the way of wings without further laws.
 template <Scalar S>
 [[gnu::noinline]] S moment_by_every_law(const BladeElement<S>& w, const S& stroke_speed) {

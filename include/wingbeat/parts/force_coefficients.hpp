@@ -132,13 +132,18 @@ S tangential_coefficient(const S& alpha) {
   return select<S>(abs(alpha) < S(0.25 * pi), square(S(cos(S(S(2.0) * alpha)))), S(0.0));
 }
 
-/// The sine of C_L and the cosine of C_D [1] at angle of attack alpha [rad].
+/// The wave of eq 12 [1], \f$a_\mathrm{L} + b_\mathrm{L} \sin(m_\mathrm{L} \alpha + \alpha_\mathrm{0,L})\f$.
 template <Scalar S>
-[[gnu::always_inline]] inline LiftAndDrag<S> coefficient_waves(const ForceCoefficients<S>& c, const S& alpha) {
-  using std::cos;
+[[gnu::always_inline]] inline S lift_wave(const ForceCoefficients<S>& c, const S& alpha) {
   using std::sin;
-  return {c.lift.offset + c.lift.amplitude * sin(c.lift.rate * alpha + c.lift.phase),
-          c.drag.offset + c.drag.amplitude * cos(c.drag.rate * alpha + c.drag.phase)};
+  return c.lift.offset + c.lift.amplitude * sin(c.lift.rate * alpha + c.lift.phase);
+}
+
+/// The wave of eq 13 [1], \f$a_\mathrm{D} + b_\mathrm{D} \cos(m_\mathrm{D} \alpha + \alpha_\mathrm{0,D})\f$.
+template <Scalar S>
+[[gnu::always_inline]] inline S drag_wave(const ForceCoefficients<S>& c, const S& alpha) {
+  using std::cos;
+  return c.drag.offset + c.drag.amplitude * cos(c.drag.rate * alpha + c.drag.phase);
 }
 
 /// C_L [1] (eq 12) at angle of attack alpha [rad]: a sine of CoefficientWave, less the share of a force along the
@@ -153,7 +158,7 @@ S lift_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   if constexpr (ScalarTraits<S>::reads_tables) {
     if (c.table) return detail::evaluate_table([&](double x) { return c.table->lift_piece(x); }, alpha);
   }
-  const S wave = coefficient_waves(c, alpha).lift;
+  const S wave = lift_wave(c, alpha);
   if (!acts(c.tangential)) return wave;
   return wave - c.tangential * tangential_coefficient(alpha) * sin(alpha);
 }
@@ -170,7 +175,7 @@ S drag_coefficient(const ForceCoefficients<S>& c, const S& alpha) {
   if constexpr (ScalarTraits<S>::reads_tables) {
     if (c.table) return detail::evaluate_table([&](double x) { return c.table->drag_piece(x); }, alpha);
   }
-  const S wave = coefficient_waves(c, alpha).drag;
+  const S wave = drag_wave(c, alpha);
   if (!acts(c.tangential)) return wave;
   return wave + c.tangential * tangential_coefficient(alpha) * cos(alpha);
 }
@@ -194,7 +199,7 @@ template <bool every_law, Scalar S>
     if (c.table.from_tables) return detail::read_tables(c.table, alpha);
     if (acts(c.tangential)) return detail::coefficients_by_every_law(c, alpha);
   }
-  return coefficient_waves(c, alpha);
+  return {lift_wave(c, alpha), drag_wave(c, alpha)};
 }
 
 }  // namespace wingbeat

@@ -34,7 +34,7 @@ inline constexpr std::size_t wake_strip_count = 16;
 /// The strips that lift, nodes of a quadrature along the span.
 template <Scalar S>
 struct WakeStrips {
-  static constexpr bool off_lanes = true;
+  static constexpr bool off_lanes = true;  ///< no numbers of a vehicle on lanes, which point to them
   std::array<WakeStrip<S>, wake_strip_count> at;
 
   template <class Self, class Use>

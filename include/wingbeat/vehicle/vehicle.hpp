@@ -47,8 +47,8 @@ struct Vehicle {
   WingLimits<S> wing_limits;  ///< beyond which the wings or their coefficients are no longer what the equations say
   S voltage_offset = S(0);    ///< V_0 of a sine supply [V]
   OffLanes<Electronics, S> electronics{};
-  OffLanes<Piezo, S>
-      piezo{};  ///< in place of the motor, of which `motor` then has inertia and damping, about stroke angle zero
+  /// In place of the motor, of which `motor` then has inertia and damping, about stroke angle zero.
+  OffLanes<Piezo, S> piezo{};
 
   template <class Self, class Use>
   static constexpr auto members(Self& self, const Use& use) {
