@@ -146,7 +146,7 @@ Metrics<S> cycle_metrics(const V<S>& v, const CycleIntegrals<S>& integrals, cons
   const S terminal_power = f * total(Integral::electrical_work);
   m[Metric::power_electronics] = S(absent);
   m[Metric::power_electrical] = terminal_power;
-  if constexpr (ScalarTraits<S>::reads_tables && requires { v.electronics; }) {
+  if constexpr (ScalarTraits<S>::reads_tables && requires { electronics_power(v, terminal_power, f); }) {
     if (const std::optional<S> lost = electronics_power(v, terminal_power, f)) {
       m[Metric::power_electronics] = *lost;
       m[Metric::power_electrical] = terminal_power + *lost;
