@@ -135,7 +135,7 @@ concept NotOnLanes = M::off_lanes;
 
 template <Scalar T, class M>
 constexpr auto converted(const M& member) {
-  if constexpr (!ScalarTraits<T>::reads_tables && NotOnLanes<M>) {
+  if constexpr (!ScalarTraits<T>::reads_tables && (NotOnLanes<M> || is_shared<M>)) {
     return nullptr;
   } else if constexpr (ListsMembers<M>) {
     return cast<T>(member);
@@ -143,8 +143,6 @@ constexpr auto converted(const M& member) {
     return converted_number<T>(member);
   } else if constexpr (is_optional<M>) {
     return member ? std::optional<T>(converted_number<T>(*member)) : std::nullopt;
-  } else if constexpr (is_shared<M> && !ScalarTraits<T>::reads_tables) {
-    return nullptr;
   } else {
     return member;
   }
