@@ -6,6 +6,14 @@
 
 #include <type_traits>
 
+/// Inlined wherever it is called, for speed; in WebAssembly, where the size of the page counts, as the compiler
+/// decides.
+#ifdef __wasm__
+#define WINGBEAT_INLINE_FOR_SPEED inline
+#else
+#define WINGBEAT_INLINE_FOR_SPEED [[gnu::always_inline]] inline
+#endif
+
 namespace wingbeat {
 
 /// What the library needs to know of a scalar type; specialised for each, a type without a specialisation is not a

@@ -15,7 +15,7 @@ namespace wingbeat {
 
 /// The time integrands at one instant, indexed by Integral.
 template <Scalar S>
-[[gnu::always_inline]] inline CycleIntegrals<S> integrands(const Motion<S>& m, const S& omega, const Mode<S>& mode) {
+WINGBEAT_INLINE_FOR_SPEED CycleIntegrals<S> integrands(const Motion<S>& m, const S& omega, const Mode<S>& mode) {
   const S i = m.current;
   return {S(1.0),
           i,

@@ -174,10 +174,9 @@ inline bool acts_by_strips(const BladeElement<double>& w) {
 /// Adds lift [N] and, in the place of a drag, moment [N m] of a strip of loads_in_wake(). `half_density`: half of rho;
 /// `along_the_flow`: C_L(0).
 template <Scalar S>
-[[gnu::always_inline]] inline void add_strip_in_wake(const ForceCoefficients<S>& coefficients, const S& half_density,
-                                                     const WakeStrip<S>& strip, const StripFlow<S>& flow,
-                                                     const S& alpha, const S& along_the_flow, const S& clap,
-                                                     LiftAndDrag<S>& sum) {
+WINGBEAT_INLINE_FOR_SPEED void add_strip_in_wake(const ForceCoefficients<S>& coefficients, const S& half_density,
+                                                 const WakeStrip<S>& strip, const StripFlow<S>& flow, const S& alpha,
+                                                 const S& along_the_flow, const S& clap, LiftAndDrag<S>& sum) {
   const LiftAndDrag<S> of_set = force_coefficients<true>(coefficients, S(alpha - flow.inflow_angle));
   const S C_L = of_set.lift - along_the_flow * square(flow.sine), C_D = of_set.drag;
   const S closeness = S(1.0) + (clap - S(1.0)) * square(flow.cosine);
@@ -249,10 +248,9 @@ bool needs_stroke_angle(const BladeElement<S>& w) {
 /// all of it times the factor `clap` of clap and fling. Where there is a table of loads, lift and moment are its own,
 /// which may depend on the stroke angle beta [rad] as well.
 template <bool every_law = true, Scalar S>
-[[gnu::always_inline]] inline AeroLoads<S> aero_loads(const BladeElement<S>& w, const S& stroke_velocity,
-                                                      const S& stroke, const S& pitching,
-                                                      [[maybe_unused]] const S& clap = S(1.0),
-                                                      [[maybe_unused]] const S& stroke_angle = S(0.0)) {
+WINGBEAT_INLINE_FOR_SPEED AeroLoads<S> aero_loads(const BladeElement<S>& w, const S& stroke_velocity, const S& stroke,
+                                                  const S& pitching, [[maybe_unused]] const S& clap = S(1.0),
+                                                  [[maybe_unused]] const S& stroke_angle = S(0.0)) {
   const S speed = stroke * stroke_velocity;
   AeroLoads<S> loads;
   S alpha = S(pi / 2.0) - w.pitch_coefficient * speed;
@@ -316,7 +314,7 @@ template <bool every_law = true, Scalar S>
 
 /// The loads at stroke speed |beta'| [rad/s], on the branch of the pitching that holds.
 template <Scalar S>
-[[gnu::always_inline]] inline AeroLoads<S> aero_loads(const BladeElement<S>& w, const S& stroke_speed) {
+WINGBEAT_INLINE_FOR_SPEED AeroLoads<S> aero_loads(const BladeElement<S>& w, const S& stroke_speed) {
   return aero_loads(w, stroke_speed, S(1.0), pitch_margin(w, stroke_speed));
 }
 

@@ -134,14 +134,14 @@ S tangential_coefficient(const S& alpha) {
 
 /// The wave of eq 12 [1], \f$a_\mathrm{L} + b_\mathrm{L} \sin(m_\mathrm{L} \alpha + \alpha_\mathrm{0,L})\f$.
 template <Scalar S>
-[[gnu::always_inline]] inline S lift_wave(const ForceCoefficients<S>& c, const S& alpha) {
+WINGBEAT_INLINE_FOR_SPEED S lift_wave(const ForceCoefficients<S>& c, const S& alpha) {
   using std::sin;
   return c.lift.offset + c.lift.amplitude * sin(c.lift.rate * alpha + c.lift.phase);
 }
 
 /// The wave of eq 13 [1], \f$a_\mathrm{D} + b_\mathrm{D} \cos(m_\mathrm{D} \alpha + \alpha_\mathrm{0,D})\f$.
 template <Scalar S>
-[[gnu::always_inline]] inline S drag_wave(const ForceCoefficients<S>& c, const S& alpha) {
+WINGBEAT_INLINE_FOR_SPEED S drag_wave(const ForceCoefficients<S>& c, const S& alpha) {
   using std::cos;
   return c.drag.offset + c.drag.amplitude * cos(c.drag.rate * alpha + c.drag.phase);
 }
@@ -192,7 +192,7 @@ template <Scalar S>
 
 /// Both at once. Without `every_law` lanes have neither tables nor forces along the chord.
 template <bool every_law, Scalar S>
-[[gnu::always_inline]] inline LiftAndDrag<S> force_coefficients(const ForceCoefficients<S>& c, const S& alpha) {
+WINGBEAT_INLINE_FOR_SPEED LiftAndDrag<S> force_coefficients(const ForceCoefficients<S>& c, const S& alpha) {
   if constexpr (ScalarTraits<S>::reads_tables) {
     if (c.table || acts(c.tangential)) return detail::coefficients_by_every_law(c, alpha);
   } else if constexpr (every_law) {

@@ -131,7 +131,7 @@ bool jumps_at_pitch_stop(const V<S>& v) {
 
 /// clap_factor() at an instant of these signs; lanes have no wings that clap.
 template <template <Scalar> class V, Scalar S>
-[[gnu::always_inline]] inline S clap_factor(const V<S>& v, const Configuration<S>& configuration, const Mode<S>& mode) {
+WINGBEAT_INLINE_FOR_SPEED S clap_factor(const V<S>& v, const Configuration<S>& configuration, const Mode<S>& mode) {
   if constexpr (ScalarTraits<S>::reads_tables) {
     if (claps(v.wings.clap)) return clap_factor(v.wings.clap, configuration.stroke_angle, mode.stroke);
   }
