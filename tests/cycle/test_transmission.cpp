@@ -117,6 +117,8 @@ void expect_the_orbit_not_to_know_where_angles_start() {
   const EnergyAudit audit = energy_audit(orbit.metrics);
   EXPECT_NEAR(audit.imbalance, 0.0, 1e-9 * audit.electrical);
   EXPECT_NEAR(audit.residual, 0.0, 1e-14 * audit.electrical);
+  // electronics_power() is of Vehicle alone.
+  EXPECT_TRUE(std::isnan(orbit.metrics[Metric::power_electronics]));
   for (double phase = 0.0; phase < two_pi; phase += 0.45) {
     v.transmission.phase = phase;
     expect_same(orbit_of<N>(v, 1e-10).metrics, orbit.metrics, 2e-9);

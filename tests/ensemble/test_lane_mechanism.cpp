@@ -8,15 +8,13 @@
 #include <random>
 #include <vector>
 
+#include "ensemble/two_registers.hpp"
 #include "vehicle/kind_boxes.hpp"
 #include "wingbeat/core/pack.hpp"
 #include "wingbeat/vehicle/vehicle.hpp"
 
 namespace wingbeat {
 namespace {
-
-using Lanes = Pack<xsimd::default_arch, 2>;
-constexpr std::size_t lanes = std::size_t(Lanes::lanes);
 
 std::vector<Vehicle<double>> drawn(KindBox box, std::size_t count) {
   std::mt19937_64 random(77);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <random>
 
+#include "ensemble/two_registers.hpp"
 #include "wingbeat/core/pack.hpp"
 #include "wingbeat/ensemble/direct_pack_rule.hpp"
 #include "wingbeat/ensemble/pack_segment.hpp"
@@ -13,8 +14,6 @@
 namespace wingbeat {
 namespace {
 
-using Lanes = Pack<xsimd::default_arch, 2>;
-constexpr std::size_t lanes = std::size_t(Lanes::lanes);
 using Matrix = std::array<std::array<double, 2>, 2>;
 
 using LaneValues = std::array<double, lanes>;

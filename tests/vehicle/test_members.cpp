@@ -68,7 +68,8 @@ using Parts =
                    Friction<double>, Motor<double>, MotorThermal<double>, MotorThermalDesign<double>, GearMotor<double>,
                    Planform<double>, SliderCrank<double>, HingeSpring<double>, Supply<double>, Vehicle<double>,
                    MotorDesign<double>, TransmissionDesign<double>, FrictionDesign<double>, SpringDesign<double>,
-                   WingDesign<double>, PitchDesign<double>, PitchHinge<double>, PitchingWings<double>,
+                   WingDesign<double>, PitchDesign<double>, PitchHinge<double>, PitchingWings<double>, Piezo<double>,
+                   Electronics<double>, InducedVelocity<double>, WakeStrip<double>, WakeStrips<double>,
                    AerodynamicsDesign<double>, ItemMasses<double>, Design<double>>;
 TYPED_TEST_SUITE(Members, Parts);
 

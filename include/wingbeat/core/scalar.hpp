@@ -6,9 +6,9 @@
 
 #include <type_traits>
 
-/// Inlined wherever it is called, for speed; in WebAssembly, where the size of the page counts, as the compiler
-/// decides.
-#ifdef __wasm__
+/// Inlined wherever it is called, for speed; where size counts, as in a page, as the compiler decides (core/jet.hpp has
+/// the like for dual numbers).
+#ifdef __OPTIMIZE_SIZE__
 #define WINGBEAT_INLINE_FOR_SPEED inline
 #else
 #define WINGBEAT_INLINE_FOR_SPEED [[gnu::always_inline]] inline
